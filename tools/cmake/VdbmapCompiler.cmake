@@ -1,0 +1,20 @@
+# Flags of every target of ours: vdbmap_compiler is linked privately and never installed.
+add_library(vdbmap_compiler INTERFACE)
+target_compile_options(vdbmap_compiler INTERFACE -Wall -Wextra -Wpedantic -Wshadow -Wnon-virtual-dtor)
+if(VDBMAP_WARNINGS_AS_ERRORS)
+  target_compile_options(vdbmap_compiler INTERFACE -Werror)
+endif()
+if(VDBMAP_MARCH AND CMAKE_SYSTEM_PROCESSOR MATCHES "x86_64|AMD64")
+  target_compile_options(vdbmap_compiler INTERFACE -march=${VDBMAP_MARCH})
+endif()
+if(VDBMAP_SANITIZE)
+  target_compile_options(vdbmap_compiler INTERFACE -fsanitize=${VDBMAP_SANITIZE} -fno-omit-frame-pointer -fno-sanitize-recover=undefined)
+  target_link_options(vdbmap_compiler INTERFACE -fsanitize=${VDBMAP_SANITIZE})
+endif()
+
+find_program(CCACHE_PROGRAM ccache)
+if(CCACHE_PROGRAM AND NOT CMAKE_CXX_COMPILER_LAUNCHER)
+  set(CMAKE_CXX_COMPILER_LAUNCHER ${CMAKE_COMMAND} -E env CCACHE_SLOPPINESS=pch_defines,time_macros ${CCACHE_PROGRAM})
+  # Without it every build gets another precompiled header, and ccache never hits.
+  target_compile_options(vdbmap_compiler INTERFACE $<$<CXX_COMPILER_ID:GNU>:-fpch-preprocess>)
+endif()

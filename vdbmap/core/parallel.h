@@ -1,0 +1,40 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#pragma once
+
+#include <cstddef>
+
+#include <tbb/blocked_range.h>
+#include <tbb/global_control.h>
+#include <tbb/parallel_for.h>
+
+namespace vdbmap {
+
+/// Calls body(i) for every i of [0, count), on all threads allowed. Bodies must not depend on each other; so the
+/// result is the same for any number of threads. `grain` indices at least are run one after the other.
+template <typename Body>
+void parallel_for(std::size_t count, const Body& body, std::size_t grain = 1) {
+  tbb::parallel_for(tbb::blocked_range<std::size_t>(0, count, grain), [&](const auto& range) {
+    for (std::size_t i = range.begin(); i != range.end(); ++i) body(i);
+  });
+}
+
+/// Calls body(begin, end) for ranges that together cover [0, count); for bodies that keep state over a range.
+template <typename Body>
+void parallel_ranges(std::size_t count, std::size_t grain, const Body& body) {
+  tbb::parallel_for(tbb::blocked_range<std::size_t>(0, count, grain),
+                    [&](const auto& range) { body(range.begin(), range.end()); });
+}
+
+/// While it lives, at most `max_threads` threads work in this process (0: all cores).
+class ThreadLimit {
+ public:
+  explicit ThreadLimit(std::size_t max_threads)
+      : control_(tbb::global_control::max_allowed_parallelism,
+                 max_threads > 0 ? max_threads
+                                 : tbb::global_control::active_value(tbb::global_control::max_allowed_parallelism)) {}
+
+ private:
+  tbb::global_control control_;
+};
+
+}  // namespace vdbmap

@@ -1,0 +1,111 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "vdbmap/io/atomic_file.h"
+
+#include <fcntl.h>
+#include <unistd.h>
+
+#include <array>
+#include <atomic>
+#include <cerrno>
+#include <cstdlib>
+#include <cstring>
+
+#include <sys/stat.h>
+
+#include "vdbmap/core/error.h"
+
+namespace vdbmap {
+namespace {
+
+constexpr std::size_t kBufferSize = 1 << 20;  // [bytes]
+
+// Paths that a signal handler may remove: plain memory, claimed and released with atomics only.
+struct UnfinishedFile {
+  std::atomic<int> state{0};  // 0 free, 1 being filled, 2 to be removed
+  std::array<char, 4096> path{};
+};
+std::array<UnfinishedFile, 16> unfinished_files;
+
+void remember_unfinished(const std::string& path) {
+  for (UnfinishedFile& file : unfinished_files) {
+    int expected = 0;
+    if (path.size() >= file.path.size() || !file.state.compare_exchange_strong(expected, 1)) continue;
+    std::memcpy(file.path.data(), path.c_str(), path.size() + 1);
+    file.state.store(2);
+    return;
+  }
+}
+
+void forget_unfinished(const std::string& path) {
+  for (UnfinishedFile& file : unfinished_files) {
+    if (file.state.load() == 2 && path == file.path.data()) file.state.store(0);
+  }
+}
+
+int create_beside(const std::filesystem::path& target, std::filesystem::path& temporary) {
+  std::string name = target.string() + ".XXXXXX";
+  const int descriptor = ::mkostemp(name.data(), O_CLOEXEC);
+  if (descriptor < 0) throw IoError::system(target, "cannot create", errno);
+  temporary = name;
+
+  const mode_t mask = ::umask(0);  // mkstemp gives 0600; a finished file follows the user's umask
+  ::umask(mask);
+  ::fchmod(descriptor, 0666 & ~mask);
+  return descriptor;
+}
+
+}  // namespace
+
+AtomicFile::AtomicFile(std::filesystem::path target) : target_(std::move(target)) {
+  if (std::filesystem::is_directory(target_)) throw IoError::system(target_, "cannot create", EISDIR);
+  descriptor_ = create_beside(target_, temporary_);
+  remember_unfinished(temporary_.string());
+}
+
+AtomicFile::~AtomicFile() {
+  if (descriptor_ < 0) return;
+  ::close(descriptor_);
+  ::unlink(temporary_.c_str());
+  forget_unfinished(temporary_.string());
+}
+
+void AtomicFile::write(std::string_view bytes) {
+  buffer_.append(bytes);
+  if (buffer_.size() >= kBufferSize) flush();
+}
+
+void AtomicFile::flush() {
+  std::string_view rest = buffer_;
+  while (!rest.empty()) {
+    const ssize_t written = ::write(descriptor_, rest.data(), rest.size());
+    if (written < 0 && errno == EINTR) continue;
+    if (written < 0) throw IoError::system(target_, "cannot write", errno);
+    rest.remove_prefix(static_cast<std::size_t>(written));
+  }
+  buffer_.clear();
+}
+
+void AtomicFile::commit() {
+  flush();
+  if (::fsync(descriptor_) != 0) throw IoError::system(target_, "cannot write", errno);
+  if (::rename(temporary_.c_str(), target_.c_str()) != 0) throw IoError::system(target_, "cannot replace", errno);
+  ::close(descriptor_);
+  descriptor_ = -1;
+  forget_unfinished(temporary_.string());
+}
+
+void write_file(const std::filesystem::path& target, std::string_view bytes) {
+  AtomicFile file(target);
+  file.write(bytes);
+  file.commit();
+}
+
+void check_writable(const std::filesystem::path& target) { AtomicFile probe(target); }
+
+void remove_unfinished_files() noexcept {
+  for (UnfinishedFile& file : unfinished_files) {
+    if (file.state.load() == 2) ::unlink(file.path.data());
+  }
+}
+
+}  // namespace vdbmap

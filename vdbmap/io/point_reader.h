@@ -1,0 +1,30 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#pragma once
+
+#include <cstddef>
+#include <filesystem>
+#include <optional>
+#include <vector>
+
+#include "vdbmap/core/point_cloud.h"
+
+namespace vdbmap {
+
+/// What a point file held.
+struct ReadResult {
+  PointCloud cloud;
+  std::size_t num_dropped = 0;   ///< points with a coordinate that is not finite
+  std::optional<int> epsg;       ///< of the coordinates, where the file says so
+  double metres_per_unit = 1.0;  ///< length of the file's unit, where the file says so (a LAS file in feet: 0.3048)
+};
+
+/// Reads a PLY, PCD, LAS, KITTI .bin, XYZ/CSV or VLP-16 .pcap file; the content decides, then the extension.
+/// A file that holds no point is an error. Throws IoError with the place and the reason; never allocates more than
+/// the file's own size can account for.
+ReadResult read_points(const std::filesystem::path& path);
+
+/// The point files that `inputs` name, in order: a file stands for itself, a folder for the point files directly in it,
+/// sorted by name with numbers in numeric order. Throws IoError for a missing input or a folder without any.
+std::vector<std::filesystem::path> list_point_files(const std::vector<std::filesystem::path>& inputs);
+
+}  // namespace vdbmap
