@@ -2,10 +2,12 @@
 #pragma once
 
 #include <cstddef>
+#include <vector>
 
 #include <tbb/blocked_range.h>
 #include <tbb/global_control.h>
 #include <tbb/parallel_for.h>
+#include <tbb/parallel_sort.h>
 
 namespace vdbmap {
 
@@ -23,6 +25,12 @@ template <typename Body>
 void parallel_ranges(std::size_t count, std::size_t grain, const Body& body) {
   tbb::parallel_for(tbb::blocked_range<std::size_t>(0, count, grain),
                     [&](const auto& range) { body(range.begin(), range.end()); });
+}
+
+/// Sorts by an order in which no two values are equal; so the result is the same for any number of threads.
+template <typename Value, typename Less>
+void parallel_sort(std::vector<Value>& values, const Less& less) {
+  tbb::parallel_sort(values.begin(), values.end(), less);
 }
 
 /// While it lives, at most `max_threads` threads work in this process (0: all cores).

@@ -22,9 +22,9 @@ struct Rgb16 {
 struct PointCloud {
   std::vector<Eigen::Vector3d> positions;  ///< [unit of the file, metres by convention], all finite
   std::vector<Rgb16> colors;
-  std::vector<float> intensities;    ///< scale of the source
-  std::vector<double> times;         ///< [s] epoch of the source
-  std::vector<std::uint16_t> rings;  ///< laser number
+  std::vector<float> intensities;     ///< scale of the source
+  std::vector<double> times;          ///< [s] epoch of the source
+  std::vector<std::uint16_t> rings;   ///< laser number
   std::vector<std::uint16_t> labels;  ///< class number of the source
 
   std::size_t size() const { return positions.size(); }

@@ -1,0 +1,237 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "vdbmap/core/point_fold.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <memory>
+#include <sstream>
+#include <stdexcept>
+#include <unordered_map>
+
+#include "vdbmap/core/parallel.h"
+#include "vdbmap/core/srgb.h"
+
+namespace vdbmap {
+namespace {
+
+constexpr std::size_t kRangeSize = 1 << 14;  // points that one task numbers and scatters
+
+// A point on its way through the sort.
+struct KeyedPoint {
+  KeyInBlock key;
+  std::uint32_t source;                 // index in the cloud, from `begin`
+  std::array<std::int16_t, 3> quantum;  // position from the voxel's centre
+};
+
+// Where the points of one range go: its blocks in order of appearance, and how many points each gets.
+struct RangeBlocks {
+  std::vector<BlockKey> blocks;
+  std::vector<std::uint32_t> counts;
+  std::vector<std::uint32_t> targets;  // place of each block's first point in the sorted array
+};
+
+// Moves points into the scaled local frame, in which voxels have edge 1.
+struct Scaler {
+  Eigen::Matrix3d rotation;
+  Eigen::Vector3d translation;
+
+  Scaler(const Eigen::Isometry3d& local_from_cloud, double voxels_per_metre)
+      : rotation(local_from_cloud.linear() * voxels_per_metre),
+        translation(local_from_cloud.translation() * voxels_per_metre) {}
+
+  Eigen::Array3d operator()(const Eigen::Vector3d& point) const { return rotation * point + translation; }
+};
+
+[[noreturn]] void throw_unaddressable(const Eigen::Vector3d& point, double voxels_per_metre) {
+  std::ostringstream message;
+  message.precision(10);
+  message << "point " << point.transpose() << " is more than " << kIndexLimit / voxels_per_metre
+          << " m from the anchor, the farthest that voxel ids reach";
+  throw std::out_of_range(message.str());
+}
+
+VoxelIndex voxel_of_scaled(const Eigen::Array3d& scaled) {
+  return {static_cast<std::int32_t>(std::floor(scaled.x())), static_cast<std::int32_t>(std::floor(scaled.y())),
+          static_cast<std::int32_t>(std::floor(scaled.z()))};
+}
+
+KeyedPoint keyed_point(const Eigen::Array3d& scaled, std::uint32_t source) {
+  const VoxelIndex voxel = voxel_of_scaled(scaled);
+  KeyedPoint point{key_in_block(voxel), source, {}};
+  for (int axis = 0; axis < 3; ++axis) {
+    const double share = scaled[axis] - voxel[axis];  // [0, 1)
+    point.quantum[axis] = static_cast<std::int16_t>(static_cast<std::int32_t>(share * kQuantaPerVoxel) - 32768);
+  }
+  return point;
+}
+
+// Numbers the blocks of one range; `block_in_range` receives the number of each point's block.
+RangeBlocks number_blocks(std::span<const Eigen::Vector3d> points, const Scaler& scale, double voxels_per_metre,
+                          std::uint32_t* block_in_range) {
+  RangeBlocks range;
+  std::unordered_map<std::uint64_t, std::uint32_t> numbers;
+  auto last_block = BlockKey{~std::uint64_t{0}};
+  std::uint32_t last_number = 0;
+  for (const Eigen::Vector3d& point : points) {
+    const Eigen::Array3d scaled = scale(point);
+    const bool addressable = (scaled >= -kIndexLimit).all() && (scaled < kIndexLimit).all();
+    if (!addressable) throw_unaddressable(point, voxels_per_metre);
+
+    const BlockKey block = block_of_voxel(voxel_of_scaled(scaled));
+    if (block != last_block) {
+      last_block = block;
+      const auto next = static_cast<std::uint32_t>(range.blocks.size());
+      const auto [entry, is_new] = numbers.try_emplace(static_cast<std::uint64_t>(block), next);
+      last_number = entry->second;
+      if (is_new) {
+        range.blocks.push_back(block);
+        range.counts.push_back(0);
+      }
+    }
+    ++range.counts[last_number];
+    *block_in_range++ = last_number;
+  }
+  return range;
+}
+
+// Blocks of all ranges, sorted, with the places of their points.
+struct BlockLayout {
+  std::vector<BlockKey> blocks;
+  std::vector<std::size_t> first_point;  // one more than blocks
+};
+
+BlockLayout lay_out_blocks(std::vector<RangeBlocks>& ranges) {
+  BlockLayout layout;
+  for (const RangeBlocks& range : ranges) {
+    layout.blocks.insert(layout.blocks.end(), range.blocks.begin(), range.blocks.end());
+  }
+  std::sort(layout.blocks.begin(), layout.blocks.end());
+  layout.blocks.erase(std::unique(layout.blocks.begin(), layout.blocks.end()), layout.blocks.end());
+
+  std::vector<std::size_t> counts(layout.blocks.size() + 1, 0);
+  for (RangeBlocks& range : ranges) {
+    range.targets.resize(range.blocks.size());
+    for (std::size_t i = 0; i < range.blocks.size(); ++i) {
+      const auto place = std::lower_bound(layout.blocks.begin(), layout.blocks.end(), range.blocks[i]);
+      const auto number = static_cast<std::size_t>(place - layout.blocks.begin());
+      range.targets[i] = static_cast<std::uint32_t>(counts[number]);  // within the block, for now
+      counts[number] += range.counts[i];
+    }
+  }
+
+  layout.first_point.assign(1, 0);
+  for (std::size_t i = 0; i < layout.blocks.size(); ++i) {
+    layout.first_point.push_back(layout.first_point.back() + counts[i]);
+  }
+  for (RangeBlocks& range : ranges) {
+    for (std::size_t i = 0; i < range.blocks.size(); ++i) {
+      const auto place = std::lower_bound(layout.blocks.begin(), layout.blocks.end(), range.blocks[i]);
+      range.targets[i] += static_cast<std::uint32_t>(layout.first_point[place - layout.blocks.begin()]);
+    }
+  }
+  return layout;
+}
+
+// Stable counting sort by `bits` bits of the key from `shift`.
+void sort_by_digit(std::span<const KeyedPoint> from, KeyedPoint* to, int shift, int bits) {
+  std::array<std::uint32_t, 1 << 11> place{};
+  const std::uint32_t mask = (1u << bits) - 1;
+  for (const KeyedPoint& point : from) ++place[point.key >> shift & mask];
+  std::uint32_t sum = 0;
+  for (std::uint32_t& entry : place) sum += std::exchange(entry, sum);
+  for (const KeyedPoint& point : from) to[place[point.key >> shift & mask]++] = point;
+}
+
+void sort_by_key(std::span<KeyedPoint> points) {
+  constexpr std::size_t kFewPoints = 512;
+  if (points.size() < kFewPoints) {
+    std::sort(points.begin(), points.end(), [](const auto& a, const auto& b) { return a.key < b.key; });
+    return;
+  }
+  const auto scratch = std::make_unique_for_overwrite<KeyedPoint[]>(points.size());
+  sort_by_digit(points, scratch.get(), 0, 11);
+  sort_by_digit({scratch.get(), points.size()}, points.data(), 11, 10);
+}
+
+void add_point(VoxelSums& sums, const KeyedPoint& point) {
+  const std::int64_t x = point.quantum[0];
+  const std::int64_t y = point.quantum[1];
+  const std::int64_t z = point.quantum[2];
+  ++sums.count;
+  sums.position[0] += x;
+  sums.position[1] += y;
+  sums.position[2] += z;
+  sums.product[0] += x * x;
+  sums.product[1] += y * y;
+  sums.product[2] += z * z;
+  sums.product[3] += x * y;
+  sums.product[4] += x * z;
+  sums.product[5] += y * z;
+}
+
+void add_attributes(VoxelSums& sums, const PointCloud& cloud, std::size_t source) {
+  if (!cloud.colors.empty()) {
+    const Rgb16& color = cloud.colors[source];
+    sums.color[0] += linear_from_srgb(color.r);
+    sums.color[1] += linear_from_srgb(color.g);
+    sums.color[2] += linear_from_srgb(color.b);
+  }
+  if (!cloud.intensities.empty()) {
+    sums.intensity += std::llround(static_cast<double>(cloud.intensities[source]) * 65536.0);
+  }
+}
+
+BlockSums fold_block(std::span<KeyedPoint> points, const PointCloud& cloud, std::size_t begin) {
+  sort_by_key(points);
+  std::size_t num_voxels = 0;
+  for (std::size_t i = 0; i < points.size(); ++i) num_voxels += i == 0 || points[i].key != points[i - 1].key;
+
+  const bool has_attributes = !cloud.colors.empty() || !cloud.intensities.empty();
+  BlockSums voxels;
+  voxels.reserve(num_voxels);
+  for (const KeyedPoint& point : points) {
+    if (voxels.empty() || voxels.back().key != point.key) voxels.push_back({point.key, {}});
+    add_point(voxels.back().sums, point);
+    if (has_attributes) add_attributes(voxels.back().sums, cloud, begin + point.source);
+  }
+  return voxels;
+}
+
+}  // namespace
+
+std::vector<FoldedBlock> fold_points(const PointCloud& cloud, std::size_t begin, std::size_t end,
+                                     const Eigen::Isometry3d& local_from_cloud, double voxels_per_metre) {
+  const std::span points = std::span(cloud.positions).subspan(begin, end - begin);
+  const Scaler scale(local_from_cloud, voxels_per_metre);
+  const auto range_of = [&](std::size_t i) {
+    return points.subspan(i * kRangeSize, std::min(kRangeSize, points.size() - i * kRangeSize));
+  };
+
+  std::vector<RangeBlocks> ranges((points.size() + kRangeSize - 1) / kRangeSize);
+  const auto block_in_range = std::make_unique_for_overwrite<std::uint32_t[]>(points.size());
+  parallel_for(ranges.size(), [&](std::size_t i) {
+    ranges[i] = number_blocks(range_of(i), scale, voxels_per_metre, block_in_range.get() + i * kRangeSize);
+  });
+  const BlockLayout layout = lay_out_blocks(ranges);
+
+  const auto sorted = std::make_unique_for_overwrite<KeyedPoint[]>(points.size());
+  parallel_for(ranges.size(), [&](std::size_t i) {
+    std::size_t source = i * kRangeSize;
+    for (const Eigen::Vector3d& point : range_of(i)) {
+      sorted[ranges[i].targets[block_in_range[source]]++] =
+          keyed_point(scale(point), static_cast<std::uint32_t>(source));
+      ++source;
+    }
+  });
+
+  std::vector<FoldedBlock> folded(layout.blocks.size());
+  parallel_for(folded.size(), [&](std::size_t i) {
+    const std::size_t first = layout.first_point[i];
+    const std::span block_points(sorted.get() + first, layout.first_point[i + 1] - first);
+    folded[i] = {layout.blocks[i], fold_block(block_points, cloud, begin)};
+  });
+  return folded;
+}
+
+}  // namespace vdbmap

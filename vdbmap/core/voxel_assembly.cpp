@@ -1,0 +1,32 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "vdbmap/core/voxel_assembly.h"
+
+#include "vdbmap/core/voxel_block.h"
+
+namespace vdbmap {
+
+VoxelKey key_of_voxel(const VoxelIndex& voxel) {
+  return VoxelKey{static_cast<std::uint64_t>(block_of_voxel(voxel)) << 21 | key_in_block(voxel)};
+}
+
+VoxelAssembly::VoxelAssembly(double voxel_size, std::size_t expected_voxels) : voxel_size_(voxel_size) {
+  records_.reserve(expected_voxels);
+}
+
+bool VoxelAssembly::add(const VoxelIndex& voxel, const VoxelRecord& record) {
+  const VoxelKey key = key_of_voxel(voxel);
+  if (!records_.empty() && key <= last_key_) return false;
+  last_key_ = key;
+
+  const VoxelIndex origin(voxel.x() & ~7, voxel.y() & ~7, voxel.z() & ~7);
+  if (leaves_.empty() || leaves_.back()->origin() != origin) leaves_.push_back(std::make_unique<VoxelLeaf>(origin));
+  leaves_.back()->setValueOn(VoxelLeaf::coordToOffset(voxel));
+  records_.push_back(record);
+  return true;
+}
+
+VoxelLevel VoxelAssembly::finish() {
+  return {voxel_size_, std::move(leaves_), std::move(records_), std::move(channels_)};
+}
+
+}  // namespace vdbmap

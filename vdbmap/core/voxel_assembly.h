@@ -1,0 +1,40 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <memory>
+#include <vector>
+
+#include "vdbmap/core/voxel_level.h"
+
+namespace vdbmap {
+
+/// Sort key of a voxel: voxels sorted by it are in the order in which OpenVDB walks its tree.
+enum class VoxelKey : std::uint64_t {};
+
+/// Key of an addressable voxel.
+VoxelKey key_of_voxel(const VoxelIndex& voxel);
+
+/// Makes a level of voxels that come one by one in tree order (sorted by key_of_voxel(), each once).
+class VoxelAssembly {
+ public:
+  VoxelAssembly(double voxel_size, std::size_t expected_voxels);
+
+  /// Returns false, and adds nothing, where the order is broken.
+  [[nodiscard]] bool add(const VoxelIndex& voxel, const VoxelRecord& record);
+
+  /// To be filled beside add(), one value a voxel, or left empty.
+  VoxelChannels& channels() { return channels_; }
+
+  VoxelLevel finish();
+
+ private:
+  double voxel_size_;
+  VoxelKey last_key_{0};
+  std::vector<std::unique_ptr<VoxelLeaf>> leaves_;
+  std::vector<VoxelRecord> records_;
+  VoxelChannels channels_;
+};
+
+}  // namespace vdbmap

@@ -1,0 +1,45 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "vdbmap/core/voxel_block.h"
+
+#include <utility>
+
+namespace vdbmap {
+
+BlockSums merge_blocks(BlockSums a, BlockSums b) {
+  if (a.empty()) return b;
+  if (b.empty()) return a;
+
+  BlockSums merged;
+  merged.reserve(a.size() + b.size() / 2);
+  auto next_a = a.begin();
+  auto next_b = b.begin();
+  while (next_a != a.end() && next_b != b.end()) {
+    if (next_a->key < next_b->key) {
+      merged.push_back(*next_a++);
+    } else if (next_b->key < next_a->key) {
+      merged.push_back(*next_b++);
+    } else {
+      merged.push_back(*next_a++);
+      merged.back().sums.add(next_b++->sums);
+    }
+  }
+  merged.insert(merged.end(), next_a, a.end());
+  merged.insert(merged.end(), next_b, b.end());
+  return merged;
+}
+
+std::vector<std::unique_ptr<VoxelLeaf>> leaves_of_block(BlockKey block, const BlockSums& voxels) {
+  const VoxelIndex block_origin = origin_of_block(block);
+  std::vector<std::unique_ptr<VoxelLeaf>> leaves;
+  KeyInBlock leaf_of_last = ~KeyInBlock{0};
+  for (const KeyedSums& voxel : voxels) {
+    if (voxel.key >> 9 != leaf_of_last) {
+      leaf_of_last = voxel.key >> 9;
+      leaves.push_back(std::make_unique<VoxelLeaf>(block_origin + leaf_origin_in_block(voxel.key)));
+    }
+    leaves.back()->setValueOn(offset_in_leaf(voxel.key));
+  }
+  return leaves;
+}
+
+}  // namespace vdbmap

@@ -1,0 +1,76 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#pragma once
+
+#include <cstdint>
+#include <memory>
+#include <vector>
+
+#include "vdbmap/core/voxel.h"
+#include "vdbmap/core/voxel_level.h"
+#include "vdbmap/core/voxel_sums.h"
+
+/// Blocks are cubes of 128 voxels, OpenVDB's lowest internal nodes. Keys sort blocks, and voxels within a block, in the
+/// order in which OpenVDB walks its tree.
+namespace vdbmap {
+
+/// Sort key of a block, 42 bits.
+enum class BlockKey : std::uint64_t {};
+
+/// Sort key of a voxel within its block, 21 bits: leaf, then offset in the leaf.
+using KeyInBlock = std::uint32_t;
+
+inline constexpr int kBlockBits = 7;
+
+/// Key of the block that holds an addressable voxel.
+inline BlockKey block_of_voxel(const VoxelIndex& voxel) {
+  // Root children span 4096 voxels, their children 128.
+  const auto x = static_cast<std::uint64_t>((voxel.x() + kIndexLimit) >> kBlockBits);
+  const auto y = static_cast<std::uint64_t>((voxel.y() + kIndexLimit) >> kBlockBits);
+  const auto z = static_cast<std::uint64_t>((voxel.z() + kIndexLimit) >> kBlockBits);
+  return BlockKey{(x >> 5) << 33 | (y >> 5) << 24 | (z >> 5) << 15 | (x & 31) << 10 | (y & 31) << 5 | (z & 31)};
+}
+
+/// Lowest voxel of a block.
+inline VoxelIndex origin_of_block(BlockKey block) {
+  const auto key = static_cast<std::uint64_t>(block);
+  const auto axis = [&](int high, int low) {
+    const auto cell = static_cast<std::int32_t>((key >> high & 511) << 5 | (key >> low & 31));
+    return (cell << kBlockBits) - kIndexLimit;
+  };
+  return {axis(33, 10), axis(24, 5), axis(15, 0)};
+}
+
+/// Key of a voxel within its block.
+inline KeyInBlock key_in_block(const VoxelIndex& voxel) {
+  const auto x = static_cast<std::uint32_t>(voxel.x());
+  const auto y = static_cast<std::uint32_t>(voxel.y());
+  const auto z = static_cast<std::uint32_t>(voxel.z());
+  const auto leaf = (x >> 3 & 15) << 8 | (y >> 3 & 15) << 4 | (z >> 3 & 15);
+  return leaf << 9 | (x & 7) << 6 | (y & 7) << 3 | (z & 7);
+}
+
+/// Lowest voxel of the leaf that holds `key`, relative to the block.
+inline VoxelIndex leaf_origin_in_block(KeyInBlock key) {
+  const auto leaf = static_cast<std::int32_t>(key >> 9);
+  return {(leaf >> 8 & 15) << 3, (leaf >> 4 & 15) << 3, (leaf & 15) << 3};
+}
+
+/// Offset of the voxel within its leaf.
+inline openvdb::Index offset_in_leaf(KeyInBlock key) { return key & 511; }
+
+/// The sums of one voxel of a block.
+struct KeyedSums {
+  KeyInBlock key = 0;
+  VoxelSums sums;
+};
+
+/// Occupied voxels of one block, sorted by key.
+using BlockSums = std::vector<KeyedSums>;
+
+/// Union of two blocks; voxels in both are added.
+BlockSums merge_blocks(BlockSums a, BlockSums b);
+
+/// The leaves of a block's voxels, in tree order.
+std::vector<std::unique_ptr<VoxelLeaf>> leaves_of_block(BlockKey block, const BlockSums& voxels);
+
+}  // namespace vdbmap

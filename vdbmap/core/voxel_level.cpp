@@ -1,0 +1,33 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "vdbmap/core/voxel_level.h"
+
+namespace vdbmap {
+
+VoxelLevel::VoxelLevel(double voxel_size, std::vector<std::unique_ptr<VoxelLeaf>> leaves,
+                       std::vector<VoxelRecord> records, VoxelChannels channels)
+    : voxel_size_(voxel_size),
+      tree_(std::make_shared<VoxelTree>()),
+      records_(std::move(records)),
+      channels_(std::move(channels)) {
+  std::size_t first_record = 0;
+  for (std::unique_ptr<VoxelLeaf>& leaf : leaves) {
+    leaf->setTransientData(static_cast<openvdb::Index32>(first_record));
+    first_record += leaf->getValueMask().countOn();
+    tree_->addLeaf(leaf.release());
+  }
+}
+
+std::vector<const VoxelLeaf*> VoxelLevel::leaves() const {
+  std::vector<const VoxelLeaf*> leaves;
+  leaves.reserve(tree_->leafCount());
+  tree_->getNodes(leaves);
+  return leaves;
+}
+
+std::size_t VoxelLevel::memory_bytes() const {
+  return tree_->memUsage() + records_.capacity() * sizeof(VoxelRecord) +
+         channels_.intensities.capacity() * sizeof(float) +
+         (channels_.first_epochs.capacity() + channels_.last_epochs.capacity()) * sizeof(std::int32_t);
+}
+
+}  // namespace vdbmap

@@ -1,0 +1,52 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "vdbmap/core/voxel_map.h"
+
+#include <cmath>
+#include <sstream>
+#include <stdexcept>
+
+namespace vdbmap {
+
+const VoxelLevel* find_level(const VoxelMap& map, double voxel_size) {
+  for (const VoxelLevel& level : map.levels) {
+    if (std::abs(level.voxel_size() - voxel_size) < 1e-9) return &level;
+  }
+  return nullptr;
+}
+
+std::size_t num_points(const VoxelLevel& level) {
+  std::size_t count = 0;
+  for (const VoxelRecord& record : level.records()) count += record.count;
+  return count;
+}
+
+std::size_t memory_bytes(const VoxelMap& map) {
+  std::size_t bytes = 0;
+  for (const VoxelLevel& level : map.levels) bytes += level.memory_bytes();
+  return bytes;
+}
+
+std::optional<Extent> extent(const VoxelMap& map) {
+  openvdb::CoordBBox box;
+  if (map.levels.empty() || !map.finest().tree().evalActiveVoxelBoundingBox(box)) return std::nullopt;
+  const double size = map.finest().voxel_size();
+  return Extent{map.frame.anchor + corner_of_voxel(box.min(), size),
+                map.frame.anchor + corner_of_voxel(box.max().offsetBy(1), size)};
+}
+
+void check_anchor(const Eigen::Vector3d& anchor) {
+  const Eigen::Vector3d tiles = anchor / kTileSize;
+  const bool whole = anchor.allFinite() && tiles.array().round().isApprox(tiles.array(), 1e-12);
+  if (whole && anchor.cwiseAbs().maxCoeff() < 1e9) return;
+  std::ostringstream message;
+  message << "anchor is " << anchor.transpose() << ", expected whole multiples of " << kTileSize << " m below 1e9 m";
+  throw std::invalid_argument(message.str());
+}
+
+Eigen::Vector3d choose_anchor(const Eigen::Vector3d& point) {
+  constexpr double kSpacing = 16 * kTileSize;
+  const Eigen::Array3d steps = (point.array() / kSpacing).round();
+  return steps * kSpacing + 0.0;  // + 0.0 turns -0 into 0
+}
+
+}  // namespace vdbmap

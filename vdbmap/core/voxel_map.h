@@ -1,0 +1,55 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#pragma once
+
+#include <cstddef>
+#include <optional>
+#include <vector>
+
+#include <Eigen/Core>
+
+#include "vdbmap/core/voxel_level.h"
+
+namespace vdbmap {
+
+/// Where a map's local frame lies: local = original - anchor, axes parallel.
+struct MapFrame {
+  Eigen::Vector3d anchor = Eigen::Vector3d::Zero();  ///< [m, original system] whole multiples of kTileSize
+  std::optional<int> epsg;                           ///< of the original system, where known
+
+  bool operator==(const MapFrame&) const = default;
+};
+
+/// A voxel map: levels from the finest to the coarsest, each an exact merge of the one below.
+struct VoxelMap {
+  MapFrame frame;
+  std::vector<VoxelLevel> levels;
+  bool has_color = false;  ///< whether the points had colours; else all colour codes are 0
+
+  const VoxelLevel& finest() const { return levels.front(); }
+  const VoxelLevel& coarsest() const { return levels.back(); }
+};
+
+/// The level of the voxel size (to 1e-9), or nullptr.
+const VoxelLevel* find_level(const VoxelMap& map, double voxel_size);
+
+/// Sum of the counts of a level.
+std::size_t num_points(const VoxelLevel& level);
+
+/// Memory of all levels.
+std::size_t memory_bytes(const VoxelMap& map);
+
+/// Corners of the box around all voxels of a level [m, original system]; nothing where there is none.
+struct Extent {
+  Eigen::Vector3d min;
+  Eigen::Vector3d max;
+};
+std::optional<Extent> extent(const VoxelMap& map);
+
+/// Throws std::invalid_argument unless the anchor is finite and a whole multiple of 64 m on each axis.
+void check_anchor(const Eigen::Vector3d& anchor);
+
+/// The anchor for points near `point`: the nearest multiple of 1024 m, so that neighbouring maps mostly share it and
+/// small local coordinates keep theirs.
+Eigen::Vector3d choose_anchor(const Eigen::Vector3d& point);
+
+}  // namespace vdbmap

@@ -1,0 +1,35 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#pragma once
+
+#include <array>
+#include <cstdint>
+
+#include "vdbmap/core/moments.h"
+#include "vdbmap/core/voxel_record.h"
+
+namespace vdbmap {
+
+/// Sums over the points of one voxel in whole numbers: addition is exact, so the result depends neither on the order
+/// of the points nor on how they were cut into scans, files or threads.
+///
+/// Positions count from the voxel's centre in quanta of 2^-16 of its edge (1.5 um at 10 cm).
+struct VoxelSums {
+  std::int64_t count = 0;
+  std::array<std::int64_t, 3> position{};  ///< [quanta]
+  std::array<std::int64_t, 6> product{};   ///< xx yy zz xy xz yz [quanta^2]
+  std::array<std::int64_t, 3> color{};     ///< linear, 65535 is 1
+  std::int64_t intensity = 0;              ///< [2^-16 of the source's unit]
+
+  void add(const VoxelSums& other);
+};
+
+/// Quanta along the edge of a voxel.
+inline constexpr double kQuantaPerVoxel = 65536.0;
+
+/// The record of the sums, without a normal.
+VoxelRecord record_of(const VoxelSums& sums, double voxel_size);
+
+/// Mean intensity in the source's unit.
+float intensity_of(const VoxelSums& sums);
+
+}  // namespace vdbmap

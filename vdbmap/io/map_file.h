@@ -1,0 +1,23 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#pragma once
+
+#include <filesystem>
+
+#include "vdbmap/core/voxel_map.h"
+
+namespace vdbmap {
+
+/// How a map is written.
+struct SaveOptions {
+  /// Density of the fog that renderers see [1/m]; 10 cm of the default let 1 % of the light through.
+  float density = 50.0f;
+};
+
+/// Writes a map as a .vdb file: for every level `voxels` (all attributes), `density` and `color`, the coarser ones with
+/// the voxel size in the name. Atomic; equal maps give equal bytes. Throws IoError.
+void save_map(const std::filesystem::path& path, const VoxelMap& map, const SaveOptions& options = {});
+
+/// Reads what save_map() wrote. Throws IoError naming the file and the reason, also for .vdb files of other programs.
+VoxelMap load_map(const std::filesystem::path& path);
+
+}  // namespace vdbmap
