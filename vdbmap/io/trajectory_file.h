@@ -22,9 +22,9 @@ enum class TrajectoryFormat {
   kTum,    ///< a line a pose: time x y z qx qy qz qw; absent where there is no pose
 };
 
-/// Reads KITTI (12 numbers a line) or TUM (8 numbers, '#' comments); the first data line decides. Throws IoError with the
-/// line for other numbers of columns, infinity, half-missing poses, and matrices that are not rotations (1e-3).
-/// The rotation is made exactly orthonormal.
+/// Reads KITTI (12 numbers a line) or TUM (8 numbers, '#' comments); the first data line decides. Throws IoError with
+/// the line for other numbers of columns, infinity, half-missing poses, and matrices that are not rotations (1e-3). The
+/// rotation is made exactly orthonormal.
 Trajectory read_trajectory(const std::filesystem::path& path);
 
 /// Writes atomically with 17 significant digits. TUM without times numbers the poses 0, 1, 2, ... Throws IoError.

@@ -1,0 +1,120 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include <algorithm>
+#include <cctype>
+#include <exception>
+#include <new>
+#include <sstream>
+#include <stdexcept>
+#include <string>
+#include <vector>
+
+#include <CLI/CLI.hpp>
+#include <spdlog/spdlog.h>
+
+#include "tools/cli/command.h"
+#include "tools/cli/output.h"
+#include "tools/cli/process.h"
+#include "vdbmap/core/error.h"
+#include "vdbmap/core/parallel.h"
+
+namespace vdbmap::cli {
+namespace {
+
+constexpr const char* kVersion = "vdbmap " VDBMAP_VERSION;
+
+ExitCode fail(ExitCode code, std::string message) {
+  // A file name may hold anything; the message stays one line.
+  std::replace_if(
+      message.begin(), message.end(), [](unsigned char c) { return std::iscntrl(c) != 0; }, ' ');
+  spdlog::error(message);
+  return code;
+}
+
+std::string footer(const std::string& examples) {
+  std::string text = "Examples:\n";
+  std::istringstream lines(examples);
+  for (std::string line; std::getline(lines, line);) text += "  " + line + "\n";
+  text.pop_back();
+  return text;
+}
+
+void add_command(CLI::App& app, const Command& command, CommonOptions& common) {
+  CLI::App& subcommand = *app.add_subcommand(command.name, command.summary);
+  command.add_options(subcommand);
+  add_common_options(subcommand, common);
+  subcommand.footer(footer(command.examples));
+  subcommand.group("Commands");
+}
+
+const Command* find_command(const std::vector<Command>& commands, const std::string& name) {
+  const auto found = std::find_if(commands.begin(), commands.end(), [&](const Command& c) { return c.name == name; });
+  return found == commands.end() ? nullptr : &*found;
+}
+
+// CLI11 only says that a subcommand is missing; a user who mistyped one wants to know which.
+void check_command_name(const std::vector<Command>& commands, int argc, char** argv) {
+  if (argc < 2) throw std::invalid_argument("no command given, see vdbmap --help");
+  const std::string name = argv[1];
+  if (name.starts_with("-") || find_command(commands, name) != nullptr) return;
+  throw std::invalid_argument("no command '" + name + "', see vdbmap --help");
+}
+
+std::string text_for(const CLI::App& app, const CLI::Success& help_or_version) {
+  std::ostringstream text;
+  app.exit(help_or_version, text, text);
+  return text.str();
+}
+
+ExitCode run_chosen(const CLI::App& app, const std::vector<Command>& commands, const CommonOptions& common) {
+  if (common.quiet) silence_log();
+  const ThreadLimit limit(common.num_threads);
+  return find_command(commands, app.get_subcommands().front()->get_name())->run(common);
+}
+
+ExitCode run_command_line(int argc, char** argv) {
+  CLI::App app("Voxel maps of city streets: build them from point clouds, look into them, find later scans in them.",
+               "vdbmap");
+  app.set_version_flag("--version", kVersion, "Print the version and stop");
+  app.set_help_flag("-h,--help", "Print this help and stop");
+  app.get_formatter()->label("SUBCOMMAND", "COMMAND");
+  app.require_subcommand(1);
+  app.footer("vdbmap COMMAND --help describes a command, with examples.");
+
+  CommonOptions common;
+  const std::vector<Command> commands = all_commands();
+  for (const Command& command : commands) add_command(app, command, common);
+  check_command_name(commands, argc, argv);
+  try {
+    app.parse(argc, argv);
+  } catch (const CLI::Success& help_or_version) {
+    print_result(text_for(app, help_or_version));
+    return ExitCode::kDone;
+  }
+  return run_chosen(app, commands, common);
+}
+
+// The one place where errors become messages and exit codes.
+ExitCode run_guarded(int argc, char** argv) {
+  try {
+    return run_command_line(argc, argv);
+  } catch (const IoError& error) {
+    const bool malformed = error.kind() == IoError::Kind::kMalformed;
+    return fail(malformed ? ExitCode::kBadInput : ExitCode::kInputOutputFailed, error.what());
+  } catch (const CLI::ParseError& error) {
+    return fail(ExitCode::kWrongUsage, error.what());
+  } catch (const std::invalid_argument& error) {
+    return fail(ExitCode::kWrongUsage, error.what());
+  } catch (const std::bad_alloc&) {
+    return fail(ExitCode::kInputOutputFailed, "out of memory");
+  } catch (const std::exception& error) {
+    return fail(ExitCode::kInputOutputFailed, error.what());
+  }
+}
+
+}  // namespace
+}  // namespace vdbmap::cli
+
+int main(int argc, char** argv) {
+  vdbmap::cli::prepare_process();
+  return static_cast<int>(vdbmap::cli::run_guarded(argc, argv));
+}

@@ -1,0 +1,42 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#pragma once
+
+#include <cstddef>
+#include <filesystem>
+#include <string>
+#include <vector>
+
+#include <CLI/App.hpp>
+
+#include "vdbmap/io/trajectory_file.h"
+
+namespace vdbmap::cli {
+
+/// Which scans of a sequence to use: number `offset`, counted from 0, and each `every`-th after it.
+struct ScanSelection {
+  std::size_t every = 1;
+  std::size_t offset = 0;
+
+  /// Positions in a sequence of `count`.
+  std::vector<std::size_t> indices(std::size_t count) const;
+
+  /// As on the command line: "--every 2 --offset 1".
+  std::string text() const;
+};
+
+/// Declares --every and --offset.
+void add_scan_selection(CLI::App& app, ScanSelection& selection);
+
+/// The chosen files of a sequence.
+std::vector<std::filesystem::path> select(const std::vector<std::filesystem::path>& scans,
+                                          const ScanSelection& selection);
+
+/// The chosen poses, with their times.
+Trajectory select(const Trajectory& poses, const ScanSelection& selection);
+
+/// The poses of `path` for the `num_wanted` chosen scans: all of them when there are just so many, else those at the
+/// places of the selection. Throws IoError naming both counts when neither fits.
+Trajectory read_selected_poses(const std::filesystem::path& path, const ScanSelection& selection,
+                               std::size_t num_wanted);
+
+}  // namespace vdbmap::cli

@@ -1,0 +1,47 @@
+#!/usr/bin/env bash
+# SPDX-License-Identifier: GPL-3.0-or-later
+# tools/demo.sh DATA_FOLDER: from a folder with velodyne/ and poses.txt, builds a map of every second scan into demo/,
+# looks into it, and finds the other scans in it.
+set -euo pipefail
+if (($# != 1)); then
+  echo "usage: tools/demo.sh DATA_FOLDER" >&2
+  exit 2
+fi
+if [[ ! -d $1/velodyne || ! -f $1/poses.txt ]]; then
+  echo "tools/demo.sh: $1 must hold velodyne/ and poses.txt" >&2
+  exit 3
+fi
+data=$(realpath "$1")
+cd "$(dirname "${BASH_SOURCE[0]}")/.."
+. tools/packages.sh
+
+install_missing "${build_packages[@]}" "${test_packages[@]}"
+cmake --preset release
+cmake --build --preset release --target vdbmap_command
+mkdir -p demo
+
+vdbmap() {
+  printf '\n$ vdbmap %s\n' "$*"
+  build/release/bin/vdbmap "$@"
+}
+
+# The mean of a voxel halfway down the exported list: a place where there is something to ask for.
+some_point() {
+  awk -v count="$(wc -l < "$1")" -F '[ ,\t]+' 'NR > count / 2 && $1 + 0 == $1 { print $1 "," $2 "," $3; exit }' "$1"
+}
+
+# The guess for each odd scan is the pose of the scan before it.
+awk 'NR % 2 == 0 { print before } { before = $0 }' "$data/poses.txt" > demo/guesses.txt
+
+vdbmap build "$data/velodyne" --poses "$data/poses.txt" --every 2 -o demo/map.vdb
+vdbmap info demo/map.vdb
+vdbmap export demo/map.vdb demo/map.xyz
+vdbmap query demo/map.vdb --at "$(some_point demo/map.xyz)"
+vdbmap check demo/map.vdb
+vdbmap export demo/map.vdb demo/map.ply
+vdbmap export demo/map.vdb --channels demo/channels.vdb
+vdbmap import demo/channels.vdb -o demo/imported.vdb
+vdbmap build "$data/velodyne" --poses "$data/poses.txt" --every 2 --offset 1 -o demo/odd.vdb
+vdbmap merge demo/map.vdb demo/odd.vdb -o demo/both.vdb
+vdbmap localize demo/map.vdb "$data/velodyne" --every 2 --offset 1 --initial demo/guesses.txt -o demo/poses.txt
+vdbmap evaluate demo/poses.txt "$data/poses.txt" --every 2 --offset 1

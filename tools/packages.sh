@@ -1,0 +1,32 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+# The Debian 12 packages of the project, for the scripts beside this file to source.
+
+build_packages=(
+  cmake g++ ninja-build pkg-config
+  libceres-dev libcli11-dev libeigen3-dev libopenvdb-dev libpcap-dev libspdlog-dev libtbb-dev libxxhash-dev nlohmann-json3-dev
+  # OpenVDB's find module wants these; libopenvdb-dev does not depend on them.
+  libblosc-dev libboost-iostreams-dev zlib1g-dev
+)
+test_packages=(libbenchmark-dev libgmock-dev libgtest-dev)
+ci_packages=(blender ccache clang-format python3-numpy python3-openvdb)
+
+is_installed() {
+  [[ $(dpkg-query --show --showformat='${db:Status-Status}' "$1" 2>/dev/null) == installed ]]
+}
+
+as_root() {
+  if [[ $(id -u) == 0 ]]; then "$@"; else sudo "$@"; fi
+}
+
+# Installs those of the packages that are missing; touches nothing where all are there.
+install_missing() {
+  local package missing=()
+  for package in "$@"; do
+    is_installed "$package" || missing+=("$package")
+  done
+  if ((${#missing[@]} == 0)); then return; fi
+
+  echo "installing: ${missing[*]}"
+  as_root apt-get update
+  as_root env DEBIAN_FRONTEND=noninteractive apt-get install --yes --no-install-recommends "${missing[@]}"
+}

@@ -1,0 +1,36 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#pragma once
+
+#include <cstdint>
+#include <optional>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "vdbmap/io/byte_reader.h"
+
+namespace vdbmap {
+
+/// The words of a line between white space.
+std::vector<std::string_view> split_words(std::string_view line);
+
+/// Cuts the next word off the front of `rest`; empty where only white space is left.
+std::string_view next_word(std::string_view& rest);
+
+/// The next line that is not blank.
+std::string_view read_filled_line(ByteReader& reader);
+
+/// The words of the next line of a header. Throws IoError for a line above 64 KiB, which binary data may look like.
+std::vector<std::string_view> read_header_words(ByteReader& reader);
+
+/// A whole word as a number: "-1.5", "+2e3", "nan", "inf". Independent of the locale.
+std::optional<double> parse_number(std::string_view word);
+
+/// A whole word as a number of things: digits only, below 2^64.
+std::optional<std::uint64_t> parse_count(std::string_view word);
+
+/// Part of a foreign file, made fit for one line of an error message: in quotes, short, printable.
+/// Call it vdbmap::quoted() on a std::string, which would else find std::quoted() too.
+std::string quoted(std::string_view text);
+
+}  // namespace vdbmap
