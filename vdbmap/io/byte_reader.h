@@ -1,0 +1,84 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#pragma once
+
+#include <bit>
+#include <concepts>
+#include <cstdint>
+#include <cstring>
+#include <filesystem>
+#include <memory>
+#include <string>
+#include <string_view>
+#include <type_traits>
+
+namespace vdbmap {
+
+template <typename T>
+concept Scalar = std::is_arithmetic_v<T> &&(sizeof(T) == 1 || sizeof(T) == 2 || sizeof(T) == 4 || sizeof(T) == 8);
+
+/// Reverses the bytes of a number.
+template <Scalar T>
+T swap_bytes(T value) {
+  if constexpr (sizeof(T) == 8) return std::bit_cast<T>(__builtin_bswap64(std::bit_cast<std::uint64_t>(value)));
+  if constexpr (sizeof(T) == 4) return std::bit_cast<T>(__builtin_bswap32(std::bit_cast<std::uint32_t>(value)));
+  if constexpr (sizeof(T) == 2) return std::bit_cast<T>(__builtin_bswap16(std::bit_cast<std::uint16_t>(value)));
+  return value;
+}
+
+/// The number stored at `bytes`, which need not be aligned and must hold sizeof(T) bytes.
+template <Scalar T, std::endian Order = std::endian::little>
+T load(const char* bytes) {
+  T value;
+  std::memcpy(&value, bytes, sizeof(T));
+  if constexpr (Order != std::endian::native) return swap_bytes(value);
+  return value;
+}
+
+/// The first `count` bytes of a file, or all where it is shorter. Throws IoError.
+std::string read_front(const std::filesystem::path& path, std::uint64_t count);
+
+/// A file read from front to back. Whatever would leave the file throws IoError with path, offset and reason.
+class ByteReader {
+ public:
+  /// Reads the whole file: the memory taken is the size that the file system reports. Throws IoError.
+  explicit ByteReader(std::filesystem::path path);
+
+  const std::filesystem::path& path() const { return path_; }
+  std::uint64_t size() const { return size_; }                 ///< [bytes] of the file
+  std::uint64_t offset() const { return offset_; }             ///< [bytes] of the next read, from the front of the file
+  std::uint64_t remaining() const { return size_ - offset_; }  ///< [bytes] from offset() to the end
+  std::uint64_t line() const { return line_; }  ///< number of the line last returned by read_line(), from 1
+
+  void seek(std::uint64_t offset);
+  void skip(std::uint64_t count);
+
+  /// The next `count` bytes; the view lives as long as the reader.
+  std::string_view bytes(std::uint64_t count);
+
+  /// The next number, little or big endian.
+  template <Scalar T>
+  T read_le() {
+    return load<T, std::endian::little>(bytes(sizeof(T)).data());
+  }
+  template <Scalar T>
+  T read_be() {
+    return load<T, std::endian::big>(bytes(sizeof(T)).data());
+  }
+
+  /// The next line without its LF or CRLF; the last line may lack it. Throws at the end of the file.
+  std::string_view read_line();
+
+  /// Throws IoError: "path: byte OFFSET: reason".
+  [[noreturn]] void fail(const std::string& reason) const;
+  /// Throws IoError about the line last read: "path:LINE: reason".
+  [[noreturn]] void fail_line(const std::string& reason) const;
+
+ private:
+  std::filesystem::path path_;
+  std::unique_ptr<char[]> data_;
+  std::uint64_t size_ = 0;
+  std::uint64_t offset_ = 0;
+  std::uint64_t line_ = 0;
+};
+
+}  // namespace vdbmap

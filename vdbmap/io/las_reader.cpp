@@ -1,0 +1,102 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include <algorithm>
+#include <utility>
+#include <vector>
+
+#include "vdbmap/core/error.h"
+#include "vdbmap/io/byte_reader.h"
+#include "vdbmap/io/las.h"
+#include "vdbmap/io/las_header.h"
+#include "vdbmap/io/las_reference_system.h"
+#include "vdbmap/io/point_cloud_filter.h"
+
+namespace vdbmap {
+namespace {
+
+constexpr std::size_t kIntensityAt = 12;
+
+// One value a point record, by a function of the record's first byte.
+template <typename T, typename Read>
+std::vector<T> read_column(const char* first_record, const LasHeader& header, Read&& read) {
+  std::vector<T> values(header.num_points);
+  const char* record = first_record;
+  for (T& value : values) {
+    value = static_cast<T>(read(record));
+    record += header.record_length;
+  }
+  return values;
+}
+
+// The specification says for intensities that 0 stands for an attribute the source did not have.
+template <typename T>
+void forget_if_all_zero(std::vector<T>& values) {
+  if (std::ranges::all_of(values, [](const T& value) { return value == T{}; })) values = {};
+}
+
+std::vector<Eigen::Vector3d> read_positions(const char* first_record, const LasHeader& header) {
+  return read_column<Eigen::Vector3d>(first_record, header, [&](const char* record) -> Eigen::Vector3d {
+    const Eigen::Vector3d quanta(load<std::int32_t>(record), load<std::int32_t>(record + 4),
+                                 load<std::int32_t>(record + 8));
+    return quanta.cwiseProduct(header.scale) + header.offset;
+  });
+}
+
+std::vector<Rgb16> read_colors(const char* first_record, const LasHeader& header) {
+  auto colors = read_column<Rgb16>(first_record, header, [at = *header.format.color_at](const char* record) {
+    const char* color = record + at;
+    return Rgb16{load<std::uint16_t>(color), load<std::uint16_t>(color + 2), load<std::uint16_t>(color + 4)};
+  });
+  const auto has_8_bits = [](const Rgb16& color) { return std::max({color.r, color.g, color.b}) <= 255; };
+  if (!std::ranges::all_of(colors, has_8_bits)) return colors;
+
+  const auto widened = [](std::uint16_t channel) { return static_cast<std::uint16_t>(channel * 257); };
+  for (Rgb16& color : colors) color = {widened(color.r), widened(color.g), widened(color.b)};
+  return colors;
+}
+
+PointCloud read_points(const char* first_record, const LasHeader& header) {
+  const LasPointFormat& format = header.format;
+  PointCloud cloud;
+  cloud.positions = read_positions(first_record, header);
+  cloud.intensities = read_column<float>(first_record, header,
+                                         [](const char* record) { return load<std::uint16_t>(record + kIntensityAt); });
+  cloud.labels = read_column<std::uint16_t>(first_record, header, [&](const char* record) {
+    return load<std::uint8_t>(record + format.classification_at) & format.classification_mask;
+  });
+  if (format.color_at) cloud.colors = read_colors(first_record, header);
+  if (format.time_at) {
+    cloud.times = read_column<double>(first_record, header,
+                                      [&](const char* record) { return load<double>(record + *format.time_at); });
+  }
+  forget_if_all_zero(cloud.intensities);
+  forget_if_all_zero(cloud.labels);
+  forget_if_all_zero(cloud.colors);
+  return cloud;
+}
+
+void refuse_compression(const std::filesystem::path& path, const std::vector<LasRecord>& records) {
+  const auto is_laszip = [](const LasRecord& record) { return record.user == "laszip encoded"; };
+  if (std::ranges::any_of(records, is_laszip)) {
+    throw IoError::malformed(path,
+                             "LAZ compression is not supported: decompress the file first (laszip, pdal translate)");
+  }
+}
+
+}  // namespace
+
+ReadResult read_las(const std::filesystem::path& path) {
+  ByteReader file(path);
+  const LasHeader header = read_las_header(file);
+  const std::vector<LasRecord> records = read_las_records(file, header);
+  refuse_compression(path, records);
+  const LasReferenceSystem system = find_reference_system(path, header, records);
+
+  file.seek(header.points_offset);
+  const std::string_view points = file.bytes(header.num_points * header.record_length);
+  ReadResult result = finish_reading(path, read_points(points.data(), header));
+  result.epsg = system.epsg;
+  result.metres_per_unit = system.metres_per_unit.value_or(1.0);
+  return result;
+}
+
+}  // namespace vdbmap

@@ -1,0 +1,33 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "vdbmap/io/point_reader.h"
+
+#include "vdbmap/core/error.h"
+#include "vdbmap/io/kitti_bin.h"
+#include "vdbmap/io/las.h"
+#include "vdbmap/io/pcd.h"
+#include "vdbmap/io/ply.h"
+#include "vdbmap/io/point_format.h"
+#include "vdbmap/io/vlp16_pcap.h"
+#include "vdbmap/io/xyz.h"
+
+namespace vdbmap {
+
+ReadResult read_points(const std::filesystem::path& path) {
+  switch (detect_point_format(path)) {
+    case PointFormat::kPly:
+      return read_ply(path);
+    case PointFormat::kPcd:
+      return read_pcd(path);
+    case PointFormat::kLas:
+      return read_las(path);
+    case PointFormat::kKittiBin:
+      return read_kitti_bin(path);
+    case PointFormat::kXyz:
+      return read_xyz(path);
+    case PointFormat::kVlp16Pcap:
+      return read_vlp16_pcap(path);
+  }
+  throw IoError::malformed(path, "not a point file");
+}
+
+}  // namespace vdbmap

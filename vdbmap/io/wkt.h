@@ -1,0 +1,18 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#pragma once
+
+#include <optional>
+#include <string_view>
+
+namespace vdbmap {
+
+/// What well-known text (OGC 01-009 and its successor 18-010) says about horizontal coordinates; nothing where it does
+/// not, however malformed.
+struct WktReferenceSystem {
+  std::optional<int> epsg;                ///< of the projected system, else of the geographic one
+  std::optional<double> metres_per_unit;  ///< of the projected system
+};
+
+WktReferenceSystem parse_wkt(std::string_view wkt);
+
+}  // namespace vdbmap
