@@ -1,0 +1,77 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "registration/fine/observability.h"
+
+#include <array>
+#include <cstdio>
+#include <numeric>
+
+#include <Eigen/Eigenvalues>
+
+namespace vdbmap::registration {
+namespace {
+
+constexpr double kLever = 10;             // [m] makes a rotation comparable with a translation
+constexpr double kMinSensitivity = 0.03;  // change of the distances per unit of motion, root mean square
+
+// Standard deviations of the guesses that fine registration accepts.
+constexpr double kGuessRotation = 0.1745;  // [rad] 10 degrees
+constexpr double kGuessTranslation = 2;    // [m]
+
+Vector6d lever_scale() {
+  Vector6d scale = Vector6d::Ones();
+  scale.head<3>() /= kLever;
+  return scale;
+}
+
+std::string describe(const Vector6d& motion) {
+  const bool is_rotation = motion.head<3>().norm() > motion.tail<3>().norm();
+  const Eigen::Vector3d axis = (is_rotation ? motion.head<3>() : motion.tail<3>()).normalized();
+  std::array<char, 96> text;
+  std::snprintf(text.data(), text.size(), "%s (%.2f, %.2f, %.2f)", is_rotation ? "rotation about" : "translation along",
+                axis.x(), axis.y(), axis.z());
+  return text.data();
+}
+
+}  // namespace
+
+Matrix6d motion_covariance(std::span<const PlaneMatch> matches, std::span<const double> weights,
+                           const Eigen::Isometry3d& map_from_scan) {
+  std::vector<double> squared_pulls = plane_distances(matches, map_from_scan);
+  for (std::size_t i = 0; i < squared_pulls.size(); ++i) {
+    const double pull = weights[i] * squared_pulls[i];
+    squared_pulls[i] = pull * pull;
+  }
+  const Matrix6d bread = information(matches, weights, map_from_scan);
+  const Matrix6d filling = information(matches, squared_pulls, map_from_scan);
+
+  // The prior belongs to unit noise; scaled by the noise it only shows where the planes say nothing.
+  Vector6d prior_variance;
+  prior_variance << Eigen::Vector3d::Constant(kGuessRotation * kGuessRotation),
+      Eigen::Vector3d::Constant(kGuessTranslation * kGuessTranslation);
+  const double noise = filling.trace() / std::max(bread.trace(), 1e-12);
+  const Matrix6d prior = (noise * prior_variance.cwiseInverse()).asDiagonal();
+  const Matrix6d inverse = (bread + prior).ldlt().solve(Matrix6d::Identity());
+  const Matrix6d covariance = inverse * (filling + noise * prior) * inverse;
+  return 0.5 * (covariance + covariance.transpose());
+}
+
+std::vector<UnobservableDirection> unobservable_directions(std::span<const PlaneMatch> matches,
+                                                           std::span<const double> weights,
+                                                           const Eigen::Isometry3d& map_from_scan) {
+  const double total = std::accumulate(weights.begin(), weights.end(), 0.0);
+  const Vector6d scale = lever_scale();
+  Matrix6d sensitivity = Matrix6d::Zero();
+  if (total > 0) {
+    sensitivity = scale.asDiagonal() * information(matches, weights, map_from_scan) * scale.asDiagonal() / total;
+  }
+  const Eigen::SelfAdjointEigenSolver<Matrix6d> solver(sensitivity);
+  std::vector<UnobservableDirection> directions;
+  for (int i = 0; i < 6; ++i) {
+    if (solver.eigenvalues()[i] >= kMinSensitivity * kMinSensitivity) break;  // ascending
+    const Vector6d motion = solver.eigenvectors().col(i);
+    directions.push_back({motion, describe(motion)});
+  }
+  return directions;
+}
+
+}  // namespace vdbmap::registration

@@ -1,0 +1,90 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "registration/fine/plane_residual.h"
+
+#include <cmath>
+
+namespace vdbmap::registration {
+namespace {
+
+Eigen::Matrix3d rotation_of(const Eigen::Vector3d& rotation_vector) {
+  const double angle = rotation_vector.norm();
+  if (angle < 1e-12) return Eigen::Matrix3d::Identity();
+  return Eigen::AngleAxisd(angle, rotation_vector / angle).toRotationMatrix();
+}
+
+Eigen::Matrix3d cross_matrix(const Eigen::Vector3d& v) {
+  Eigen::Matrix3d matrix;
+  matrix << 0, -v.z(), v.y(), v.z(), 0, -v.x(), -v.y(), v.x(), 0;
+  return matrix;
+}
+
+// Right Jacobian of SO(3): exp(w + d) = exp(w) exp(J_r(w) d) for small d (Sola, Deray & Atchuthan 2018, eq. 143).
+Eigen::Matrix3d right_jacobian(const Eigen::Vector3d& rotation_vector) {
+  const double angle = rotation_vector.norm();
+  const Eigen::Matrix3d cross = cross_matrix(rotation_vector);
+  if (angle < 1e-6) return Eigen::Matrix3d::Identity() - 0.5 * cross;
+  const double squared = angle * angle;
+  return Eigen::Matrix3d::Identity() - (1 - std::cos(angle)) / squared * cross +
+         (angle - std::sin(angle)) / (squared * angle) * cross * cross;
+}
+
+}  // namespace
+
+Eigen::Isometry3d moved_by(const Eigen::Isometry3d& map_from_scan, const Vector6d& motion) {
+  Eigen::Isometry3d moved = Eigen::Isometry3d::Identity();
+  moved.linear() = rotation_of(motion.head<3>()) * map_from_scan.linear();
+  moved.translation() = map_from_scan.translation() + motion.tail<3>();
+  return moved;
+}
+
+PlaneResiduals::PlaneResiduals(std::span<const PlaneMatch> matches, std::span<const double> weights,
+                               const Eigen::Isometry3d& map_from_scan)
+    : matches_(matches), sqrt_weights_(weights.size()), map_from_scan_(map_from_scan) {
+  for (std::size_t i = 0; i < weights.size(); ++i) sqrt_weights_[i] = std::sqrt(weights[i]);
+}
+
+bool PlaneResiduals::operator()(const double* motion, double* residuals, double* jacobian) const {
+  const Eigen::Map<const Vector6d> step(motion);
+  const Eigen::Isometry3d moved = moved_by(map_from_scan_, step);
+  const Eigen::Matrix3d motion_rotation = rotation_of(step.head<3>());
+  const Eigen::Matrix3d motion_jacobian = right_jacobian(step.head<3>());
+
+  const auto rows = static_cast<Eigen::Index>(matches_.size());
+  Eigen::Map<Eigen::Matrix<double, Eigen::Dynamic, 6>> by_motion(jacobian, jacobian ? rows : 0, 6);
+  for (Eigen::Index i = 0; i < rows; ++i) {
+    const PlaneMatch& match = matches_[static_cast<std::size_t>(i)];
+    const double scale = sqrt_weights_[static_cast<std::size_t>(i)];
+    residuals[i] = scale * match.normal.dot(moved * match.point - match.mean);
+    if (!jacobian) continue;
+    // d(exp(w) v)/dw = -exp(w) [v]x J_r(w), with v the point seen from the sensor in the map's axes.
+    const Eigen::Vector3d arm = map_from_scan_.linear() * match.point;
+    const Eigen::Vector3d normal = motion_rotation.transpose() * match.normal;
+    by_motion.row(i).head<3>() = scale * arm.cross(normal).transpose() * motion_jacobian;
+    by_motion.row(i).tail<3>() = scale * match.normal.transpose();
+  }
+  return true;
+}
+
+std::vector<double> plane_distances(std::span<const PlaneMatch> matches, const Eigen::Isometry3d& map_from_scan) {
+  std::vector<double> distances;
+  distances.reserve(matches.size());
+  for (const PlaneMatch& match : matches) {
+    distances.push_back(match.normal.dot(map_from_scan * match.point - match.mean));
+  }
+  return distances;
+}
+
+Matrix6d information(std::span<const PlaneMatch> matches, std::span<const double> weights,
+                     const Eigen::Isometry3d& map_from_scan) {
+  Matrix6d sum = Matrix6d::Zero();
+  for (std::size_t i = 0; i < matches.size(); ++i) {
+    const Eigen::Vector3d arm = map_from_scan.linear() * matches[i].point;
+    Vector6d row;
+    row.head<3>() = arm.cross(matches[i].normal);
+    row.tail<3>() = matches[i].normal;
+    sum += weights[i] * row * row.transpose();
+  }
+  return sum;
+}
+
+}  // namespace vdbmap::registration

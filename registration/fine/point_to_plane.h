@@ -1,0 +1,46 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#pragma once
+
+#include <vector>
+
+#include <Eigen/Geometry>
+
+#include "registration/fine/observability.h"
+#include "registration/fine/plane_residual.h"
+#include "registration/fine/scan_sample.h"
+#include "vdbmap/core/point_cloud.h"
+#include "vdbmap/core/voxel_map.h"
+
+namespace vdbmap::registration {
+
+/// How a scan is aligned.
+struct FineOptions {
+  double coarse_spacing = 1.5;  ///< [m] of the points used on the coarser levels
+  double fine_spacing = 1.0;    ///< [m] of the points used on the finest level; 0.5 m is no better on KITTI streets
+  RangeLimits range;
+  int max_iterations = 15;  ///< rounds of matching and solving on each level
+
+  /// Throws std::invalid_argument naming the value and what is allowed.
+  void check() const;
+};
+
+/// Where a scan lies in a map, and how well that is known.
+struct FineResult {
+  Eigen::Isometry3d map_from_scan = Eigen::Isometry3d::Identity();  ///< original system
+  Matrix6d covariance =
+      Matrix6d::Zero();        ///< rotation [rad^2] about the sensor, then translation [m^2]; axes of the map
+  double inlier_share = 0;     ///< of the sampled points: matched within 0.15 m of a plane
+  double rms_distance = 0;     ///< [m] of the inliers from their planes
+  std::size_t num_points = 0;  ///< sampled points
+  bool converged = false;      ///< the last round moved the scan by less than 1 mm and 0.01 degrees
+  std::vector<UnobservableDirection> unobservable;
+};
+
+/// Point-to-plane alignment of one scan against the map's own grids, from the coarsest level to the finest, from a
+/// guess up to 2 m and 10 degrees off (Mortazavi 2023, section 2.4: fine registration). Ceres solves each round. The
+/// result is the same for any number of threads. Throws std::invalid_argument for a guess that is not finite or not a
+/// rotation.
+FineResult align_scan(const PointCloud& scan, const VoxelMap& map, const Eigen::Isometry3d& map_from_scan_guess,
+                      const FineOptions& options = {});
+
+}  // namespace vdbmap::registration

@@ -1,0 +1,22 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#pragma once
+
+#include <span>
+#include <vector>
+
+#include <Eigen/Core>
+
+namespace vdbmap::registration {
+
+/// Distances from the sensor at which points are used [m].
+struct RangeLimits {
+  double min = 1.0;
+  double max = 100.0;
+};
+
+/// The first point of every cube of edge `spacing` [m] among the points within the limits of the scan's origin, in
+/// their order: an even cover of the surfaces where a LiDAR is dense near by and sparse far away.
+std::vector<Eigen::Vector3d> sample_points(std::span<const Eigen::Vector3d> points_in_scan, double spacing,
+                                           const RangeLimits& limits);
+
+}  // namespace vdbmap::registration
