@@ -8,6 +8,7 @@ build_packages=(
   libblosc-dev libboost-iostreams-dev zlib1g-dev
 )
 test_packages=(libbenchmark-dev libgmock-dev libgtest-dev)
+benchmark_packages=(jq time)
 ci_packages=(blender ccache clang-format python3-numpy python3-openvdb)
 
 is_installed() {

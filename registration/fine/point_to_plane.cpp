@@ -52,6 +52,10 @@ MatchingStage coarse_stage(const VoxelLevel& level, std::span<const Eigen::Vecto
   return {&level, points, {.search_voxels = 1, .min_planarity = 0.3, .plane_from_voxel = true}, {1.0, 0.2, 0.6}, 10};
 }
 
+MatchingStage middle_stage(const VoxelLevel& level, std::span<const Eigen::Vector3d> points) {
+  return {&level, points, {.search_voxels = 3, .min_planarity = 0.2, .plane_from_voxel = false}, {0.6, 0.2, 0.8}, 12};
+}
+
 MatchingStage fine_stage(const VoxelLevel& level, std::span<const Eigen::Vector3d> points, int max_iterations) {
   return {&level,
           points,
@@ -78,6 +82,15 @@ double inlier_rms(const RoundsResult& rounds) {
   return count > 0 ? std::sqrt(sum / count) : 0;
 }
 
+// Whether a scan moved farther than the coarse stage's narrow kernel bridges without false rests.
+bool is_far(const Eigen::Isometry3d& a, const Eigen::Isometry3d& b) {
+  constexpr double kTranslation = 0.8;  // [m]
+  constexpr double kRotation = 0.05;    // [rad] 3 degrees
+  const Eigen::Isometry3d difference = a.inverse() * b;
+  return (a.translation() - b.translation()).norm() > kTranslation ||
+         Eigen::AngleAxisd(difference.linear()).angle() > kRotation;
+}
+
 // Coarser levels from the coarsest down, then the finest.
 RoundsResult align_through_levels(const SampledScan& sample, const VoxelMap& map, Eigen::Isometry3d local_from_scan,
                                   const FineOptions& options) {
@@ -99,6 +112,7 @@ RoundsResult align_with_headings(const SampledScan& sample, const VoxelMap& map,
     Eigen::Isometry3d start = moved_by(guess, motion);
     start = run_rounds(near_stage(map.coarsest(), sample.near), start).local_from_scan;
     start = run_rounds(wide_stage(map.coarsest(), sample.coarse), start).local_from_scan;
+    start = run_rounds(middle_stage(map.finest(), sample.coarse), start).local_from_scan;
     RoundsResult rounds = align_through_levels(sample, map, start, options);
     const double share = inlier_share(rounds, sample.fine.size());
     if (share <= best_share) continue;
@@ -148,7 +162,7 @@ FineResult align_scan(const PointCloud& scan, const VoxelMap& map, const Eigen::
                       const FineOptions& options) {
   options.check();
   check_guess(map_from_scan_guess);
-  if (map.levels.empty() || scan.empty()) return {.map_from_scan = map_from_scan_guess};
+  if (map.levels.empty()) throw std::invalid_argument("the map has no levels");
 
   const SampledScan sample = sample_scan(scan, options);
   Eigen::Isometry3d guess = map_from_scan_guess;
@@ -156,7 +170,7 @@ FineResult align_scan(const PointCloud& scan, const VoxelMap& map, const Eigen::
 
   RoundsResult rounds = align_through_levels(sample, map, guess, options);
   const double share = inlier_share(rounds, sample.fine.size());
-  if (share < kTrustedInlierShare) {
+  if (share < kTrustedInlierShare || is_far(rounds.local_from_scan, guess)) {
     RoundsResult other = align_with_headings(sample, map, guess, options);
     if (inlier_share(other, sample.fine.size()) > share) rounds = std::move(other);
   }

@@ -4,11 +4,20 @@
 namespace vdbmap::cli {
 
 // A new command: its file defines one of these, and its row stands below.
+Command build_command();
+Command info_command();
+Command query_command();
+Command check_command();
+Command export_command();
+Command import_command();
+Command merge_command();
+Command localize_command();
 Command evaluate_command();
 
 std::vector<Command> all_commands() {
   return {
-      evaluate_command(),
+      build_command(),  info_command(),  query_command(),    check_command(),    export_command(),
+      import_command(), merge_command(), localize_command(), evaluate_command(),
   };
 }
 

@@ -11,7 +11,7 @@
 /// each axis of the map's local frame. Every other place that needs such a conversion calls these functions.
 namespace vdbmap {
 
-using VoxelIndex = openvdb::Coord;
+using VoxelIndex = openvdb::math::Coord;
 
 /// Edge of a tile [m]; anchors are whole multiples of it, and it is a whole multiple of every voxel size.
 inline constexpr double kTileSize = 64.0;

@@ -103,7 +103,53 @@ class VoxelFinder {
     return records_ + leaf->transientData() + rank_in_leaf(*leaf, offset);
   }
 
+  /// Calls body(voxel, record) for every occupied voxel whose index differs by at most `reach` (0 to 8) on each axis.
+  /// Leaf by leaf, and in a leaf whole rows of its bit mask at once: empty cells cost next to nothing.
+  template <typename Body>
+  void for_each_around(const VoxelIndex& center, std::int32_t reach, const Body& body) const {
+    const VoxelIndex low = center.offsetBy(-reach);
+    const VoxelIndex high = center.offsetBy(reach);
+    for (std::int32_t x = low.x(); x <= high.x(); x = (x | 7) + 1) {
+      for (std::int32_t y = low.y(); y <= high.y(); y = (y | 7) + 1) {
+        for (std::int32_t z = low.z(); z <= high.z(); z = (z | 7) + 1) {
+          const VoxelIndex first(x, y, z);
+          const VoxelLeaf* leaf = accessor_.probeConstLeaf(first);
+          if (leaf)
+            for_each_in_box(*leaf, first, openvdb::math::Coord::minComponent(high, {x | 7, y | 7, z | 7}), body);
+        }
+      }
+    }
+  }
+
  private:
+  // The box lies within the leaf.
+  template <typename Body>
+  void for_each_in_box(const VoxelLeaf& leaf, const VoxelIndex& low, const VoxelIndex& high, const Body& body) const {
+    const auto& mask = leaf.getValueMask();
+    const std::uint64_t row_bits = ((2u << (high.z() & 7)) - 1) & ~((1u << (low.z() & 7)) - 1);
+    const int first_layer = low.x() & 7;
+    std::size_t first_of_layer = leaf.transientData();
+    for (int i = 0; i < first_layer; ++i) first_of_layer += popcount_of_layer(mask, i);
+    for (std::int32_t x = low.x(); x <= high.x(); ++x) {
+      const std::uint64_t layer = mask.template getWord<openvdb::Index64>(static_cast<openvdb::Index>(x & 7));
+      for (std::int32_t y = low.y(); y <= high.y() && layer != 0; ++y) {
+        std::uint64_t row = layer & row_bits << (8 * (y & 7));
+        for (; row != 0; row &= row - 1) {
+          const int bit = std::countr_zero(row);
+          const auto rank = static_cast<std::size_t>(std::popcount(layer & ((std::uint64_t{1} << bit) - 1)));
+          body(VoxelIndex(x, y, (low.z() & ~7) | (bit & 7)), records_[first_of_layer + rank]);
+        }
+      }
+      first_of_layer += static_cast<std::size_t>(std::popcount(layer));
+    }
+  }
+
+  template <typename Mask>
+  static std::size_t popcount_of_layer(const Mask& mask, int x) {
+    return static_cast<std::size_t>(
+        std::popcount(mask.template getWord<openvdb::Index64>(static_cast<openvdb::Index>(x))));
+  }
+
   openvdb::tree::ValueAccessor<const VoxelTree, false> accessor_;
   const VoxelRecord* records_;
 };

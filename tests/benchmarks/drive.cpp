@@ -1,0 +1,40 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "tests/benchmarks/drive.h"
+
+#include <cstdlib>
+#include <optional>
+
+#include "tests/support/folders.h"
+#include "vdbmap/io/point_reader.h"
+#include "vdbmap/io/trajectory_file.h"
+
+namespace vdbmap::benchmarks {
+namespace {
+
+std::optional<std::filesystem::path> drive_folder() {
+  if (const char* chosen = std::getenv("VDBMAP_DRIVE")) return chosen;
+  const auto data = test::real_data_folder();
+  if (!data || !std::filesystem::is_directory(*data / "kitti_drive5")) return std::nullopt;
+  return *data / "kitti_drive5";
+}
+
+std::optional<Drive> read_drive() {
+  const auto folder = drive_folder();
+  if (!folder) return std::nullopt;
+  Drive drive;
+  drive.files = list_point_files({*folder / "velodyne"});
+  for (const auto& file : drive.files) drive.scans.push_back(read_points(file).cloud);
+  for (const auto& pose : read_trajectory(*folder / "poses.txt").map_from_scan) {
+    drive.map_from_scan.push_back(pose.value());
+  }
+  return drive;
+}
+
+}  // namespace
+
+const Drive* kitti_drive() {
+  static const std::optional<Drive> drive = read_drive();
+  return drive ? &*drive : nullptr;
+}
+
+}  // namespace vdbmap::benchmarks

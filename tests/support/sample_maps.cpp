@@ -1,0 +1,80 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "tests/support/sample_maps.h"
+
+#include <algorithm>
+#include <cstring>
+#include <random>
+
+namespace vdbmap::test {
+namespace {
+
+const Eigen::Vector3d kAnchor(550016, 5804992, 64);  // multiples of 64 m
+
+// Clusters of points around places on both sides of the axes, some far from the others.
+PointCloud sample_cloud() {
+  std::mt19937 random(7);
+  std::uniform_real_distribution<double> near(-0.4, 0.4);
+  std::uniform_int_distribution<int> code(0, 65535);
+  PointCloud cloud;
+  for (const Eigen::Vector3d& place :
+       {Eigen::Vector3d(0, 0, 0), Eigen::Vector3d(-30.2, 12.7, -3.1), Eigen::Vector3d(410.0, -399.9, 25.6)}) {
+    for (int i = 0; i < 400; ++i) {
+      const Eigen::Vector3d in_cluster(near(random), near(random), 0.2 * near(random));
+      cloud.positions.emplace_back(kAnchor + place + in_cluster);
+      const auto channel = [&] { return static_cast<std::uint16_t>(code(random)); };
+      cloud.colors.push_back({channel(), channel(), channel()});
+      cloud.intensities.push_back(static_cast<float>(code(random)) / 256.0f);
+    }
+  }
+  return cloud;
+}
+
+template <typename Value>
+bool same_bytes(const std::vector<Value>& a, const std::vector<Value>& b) {
+  return a.size() == b.size() && (a.empty() || std::memcmp(a.data(), b.data(), a.size() * sizeof(Value)) == 0);
+}
+
+// Bytes, not values: -0 and 0 are not the same bits.
+bool same_bytes(std::span<const VoxelRecord> a, std::span<const VoxelRecord> b) {
+  return a.size() == b.size() && std::memcmp(a.data(), b.data(), a.size_bytes()) == 0;
+}
+
+std::string difference(const VoxelLevel& a, const VoxelLevel& b) {
+  if (a.voxel_size() != b.voxel_size()) return "voxel sizes";
+  if (!a.tree().hasSameTopology(b.tree())) return "topology";
+  if (!same_bytes(a.records(), b.records())) return "records";
+  if (!same_bytes(a.channels().intensities, b.channels().intensities)) return "intensities";
+  if (!same_bytes(a.channels().first_epochs, b.channels().first_epochs)) return "first epochs";
+  if (!same_bytes(a.channels().last_epochs, b.channels().last_epochs)) return "last epochs";
+  return "";
+}
+
+}  // namespace
+
+VoxelMap sample_map() {
+  BuildOptions options;
+  options.anchor = kAnchor;
+  options.epsg = 25832;
+  options.epoch = 3;
+  return build_map(sample_cloud(), options);
+}
+
+VoxelMap sample_map_without_attributes() {
+  PointCloud cloud = sample_cloud();
+  cloud.colors.clear();
+  cloud.intensities.clear();
+  return build_map(cloud);
+}
+
+std::string difference(const VoxelMap& a, const VoxelMap& b) {
+  if (!(a.frame == b.frame)) return "frames";
+  if (a.has_color != b.has_color) return "has_color";
+  if (a.levels.size() != b.levels.size()) return "number of levels";
+  for (std::size_t i = 0; i < a.levels.size(); ++i) {
+    const std::string found = difference(a.levels[i], b.levels[i]);
+    if (!found.empty()) return found + " of level " + std::to_string(i);
+  }
+  return "";
+}
+
+}  // namespace vdbmap::test

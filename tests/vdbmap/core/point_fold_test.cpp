@@ -1,0 +1,72 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "vdbmap/core/point_fold.h"
+
+#include <algorithm>
+
+#include <gtest/gtest.h>
+
+#include "tests/support/brute_force.h"
+#include "tests/support/random_points.h"
+
+namespace vdbmap {
+namespace {
+
+const Eigen::AlignedBox3d kBox(Eigen::Vector3d(-15, -2, -1), Eigen::Vector3d(14, 2, 1));
+
+std::vector<FoldedBlock> folded(const PointCloud& cloud, std::size_t begin, std::size_t end) {
+  return fold_points(cloud, begin, end, Eigen::Isometry3d::Identity(), 10);
+}
+
+VoxelSums total(const std::vector<FoldedBlock>& blocks) {
+  VoxelSums sum;
+  for (const FoldedBlock& block : blocks) {
+    for (const KeyedSums& voxel : block.voxels) sum.add(voxel.sums);
+  }
+  return sum;
+}
+
+TEST(PointFold, AnyPartOfACloudFoldsLikeACloudOfItsOwn) {
+  const PointCloud cloud = test::random_cloud(60'000, kBox, 1);  // several tasks of 16,384 points
+  for (const auto& [begin, end] :
+       std::vector<std::pair<std::size_t, std::size_t>>{{0, 1}, {7, 20'000}, {20'000, 60'000}}) {
+    const std::vector<FoldedBlock> part = folded(cloud, begin, end);
+    const std::vector<FoldedBlock> alone = folded(test::part_of(cloud, begin, end), 0, end - begin);
+    ASSERT_EQ(part.size(), alone.size());
+    for (std::size_t i = 0; i < part.size(); ++i) {
+      EXPECT_EQ(part[i].block, alone[i].block);
+      ASSERT_EQ(part[i].voxels.size(), alone[i].voxels.size());
+      for (std::size_t v = 0; v < part[i].voxels.size(); ++v) {
+        EXPECT_EQ(part[i].voxels[v].key, alone[i].voxels[v].key);
+        EXPECT_EQ(part[i].voxels[v].sums.position, alone[i].voxels[v].sums.position);
+        EXPECT_EQ(part[i].voxels[v].sums.color, alone[i].voxels[v].sums.color);
+        EXPECT_EQ(part[i].voxels[v].sums.intensity, alone[i].voxels[v].sums.intensity);
+      }
+    }
+  }
+}
+
+TEST(PointFold, EveryPointIsCountedOnceInItsVoxel) {
+  // Up to some thousand points a block: both ways of sorting.
+  for (const std::size_t count : {10UL, 511UL, 512UL, 50'000UL}) {
+    const PointCloud cloud = test::random_cloud(count, kBox, 2);
+    const std::vector<FoldedBlock> blocks = folded(cloud, 0, count);
+    const test::PointsByVoxel expected = test::points_by_voxel(cloud.positions, 0.1);
+    std::size_t num_voxels = 0;
+    for (const FoldedBlock& block : blocks) num_voxels += block.voxels.size();
+    EXPECT_EQ(num_voxels, expected.size());
+    EXPECT_EQ(total(blocks).count, static_cast<std::int64_t>(count));
+  }
+}
+
+TEST(PointFold, BlocksAndVoxelsComeSortedAndOnce) {
+  const std::vector<FoldedBlock> blocks = folded(test::random_cloud(50'000, kBox, 3), 0, 50'000);
+  ASSERT_GT(blocks.size(), 3U);
+  for (std::size_t i = 1; i < blocks.size(); ++i) EXPECT_LT(blocks[i - 1].block, blocks[i].block);
+  for (const FoldedBlock& block : blocks) {
+    const auto not_rising = [](const KeyedSums& a, const KeyedSums& b) { return a.key >= b.key; };
+    EXPECT_EQ(std::adjacent_find(block.voxels.begin(), block.voxels.end(), not_rising), block.voxels.end());
+  }
+}
+
+}  // namespace
+}  // namespace vdbmap

@@ -1,0 +1,112 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "vdbmap/io/map_from_files.h"
+
+#include <algorithm>
+#include <stdexcept>
+
+#include <gtest/gtest.h>
+
+#include "tests/support/folders.h"
+#include "tests/support/raw_files.h"
+#include "vdbmap/io/las.h"
+#include "vdbmap/io/ply.h"
+
+namespace vdbmap {
+namespace {
+
+using test::io_error_of;
+using test::write_raw;
+
+PointCloud line(std::size_t count, const Eigen::Vector3d& first) {
+  PointCloud cloud;
+  for (std::size_t i = 0; i < count; ++i) {
+    cloud.positions.push_back(first + Eigen::Vector3d(0.03 * static_cast<double>(i), 0, 0));
+  }
+  return cloud;
+}
+
+class MapFromFilesTest : public testing::Test {
+ protected:
+  MapInput ply(const std::string& name, const PointCloud& cloud) const {
+    write_ply(folder_ / name, cloud);
+    return {folder_ / name, std::nullopt};
+  }
+
+  test::TemporaryFolder folder_;
+};
+
+TEST_F(MapFromFilesTest, EqualsBuildingFromAllPoints) {
+  const PointCloud a = line(100, {0.01, 0.01, 0.01});
+  const PointCloud b = line(50, {1.02, 0.05, 0.01});
+  const MapFromFiles built = build_map_from_files({ply("a.ply", a), ply("b.ply", b)});
+
+  MapBuilder builder({});
+  builder.add(a);
+  builder.add(b);
+  const VoxelMap expected = builder.finish();
+  EXPECT_EQ(built.num_points, 150U);
+  EXPECT_EQ(built.map.frame, expected.frame);
+  EXPECT_TRUE(std::ranges::equal(built.map.finest().records(), expected.finest().records()));
+}
+
+TEST_F(MapFromFilesTest, ReadingAheadChangesNothing) {
+  const std::vector<MapInput> inputs = {ply("a.ply", line(100, {0, 0, 0})), ply("b.ply", line(9, {0, 5, 0})),
+                                        ply("c.ply", line(30, {1, 0, 0}))};
+  MapFromFilesOptions options;
+  int num_done = 0;
+  options.on_file_done = [&num_done] { ++num_done; };
+  const MapFromFiles ahead = build_map_from_files(inputs, options);
+  EXPECT_EQ(num_done, 3);
+  options.reads_ahead = false;
+  const MapFromFiles one_by_one = build_map_from_files(inputs, options);
+  EXPECT_TRUE(std::ranges::equal(ahead.map.finest().records(), one_by_one.map.finest().records()));
+}
+
+TEST_F(MapFromFilesTest, APoseMovesTheScan) {
+  MapInput input = ply("a.ply", line(1, {1.05, 0.05, 0.05}));
+  input.map_from_scan = Eigen::Isometry3d(Eigen::AngleAxisd(EIGEN_PI / 2, Eigen::Vector3d::UnitZ()));
+  input.map_from_scan->translation().z() = 7;
+  const MapFromFiles built = build_map_from_files({input});
+  for_each_voxel(built.map.finest(),
+                 [](const VoxelIndex& voxel, std::size_t) { EXPECT_EQ(voxel, VoxelIndex(-1, 10, 70)); });
+}
+
+TEST_F(MapFromFilesTest, TellsWhatTheFilesHeld) {
+  write_raw(folder_ / "holes.xyz", "1 1 1\n2 nan 2\n");
+  write_las(folder_ / "a.las", line(10, {0, 0, 0}), {.epsg = 25832});
+  const MapFromFiles built = build_map_from_files({{folder_ / "holes.xyz", {}}, {folder_ / "a.las", {}}});
+  EXPECT_EQ(built.num_points, 11U);
+  EXPECT_EQ(built.num_dropped, 1U);
+  EXPECT_EQ(built.epsg_of_files, 25832);
+  EXPECT_EQ(built.map.frame.epsg, 25832);
+  EXPECT_TRUE(built.foreign_units.empty());
+}
+
+TEST_F(MapFromFilesTest, AnEpsgCodeOfTheOptionsComesFirst) {
+  write_las(folder_ / "a.las", line(10, {0, 0, 0}), {.epsg = 25832});
+  MapFromFilesOptions options;
+  options.build.epsg = 32632;
+  const MapFromFiles built = build_map_from_files({{folder_ / "a.las", {}}}, options);
+  EXPECT_EQ(built.epsg_of_files, 25832);
+  EXPECT_EQ(built.map.frame.epsg, 32632);
+}
+
+TEST_F(MapFromFilesTest, ScansWithAPoseSayNothingOfTheMapsSystem) {
+  write_las(folder_ / "a.las", line(10, {0, 0, 0}), {.epsg = 25832});
+  const MapFromFiles built = build_map_from_files({{folder_ / "a.las", Eigen::Isometry3d::Identity()}});
+  EXPECT_EQ(built.map.frame.epsg, std::nullopt);
+}
+
+TEST_F(MapFromFilesTest, ErrorsNameTheFile) {
+  const MapInput near = ply("near.ply", line(1, {0, 0, 0}));
+  const MapInput far = ply("far.ply", line(1, {2e5, 0, 0}));
+  EXPECT_EQ(io_error_of([&] { build_map_from_files({near, far}); }).substr(0, 9), "far.ply: ");
+  EXPECT_EQ(io_error_of([&] {
+              build_map_from_files({near, {folder_ / "missing.ply", {}}});
+            }).substr(0, 13),
+            "missing.ply: ");
+  EXPECT_THROW(build_map_from_files({}), std::invalid_argument);
+}
+
+}  // namespace
+}  // namespace vdbmap

@@ -1,0 +1,172 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include <chrono>
+#include <cstdint>
+#include <filesystem>
+#include <limits>
+#include <optional>
+#include <stdexcept>
+#include <string>
+#include <vector>
+
+#include <nlohmann/json.hpp>
+#include <spdlog/fmt/fmt.h>
+#include <spdlog/spdlog.h>
+
+#include "tools/cli/build_inputs.h"
+#include "tools/cli/command.h"
+#include "tools/cli/map_output.h"
+#include "tools/cli/map_summary.h"
+#include "tools/cli/number_list.h"
+#include "tools/cli/output.h"
+#include "tools/cli/progress.h"
+#include "tools/cli/scan_selection.h"
+#include "vdbmap/io/map_from_files.h"
+#include "vdbmap/io/point_reader.h"
+
+namespace vdbmap::cli {
+namespace {
+
+constexpr int kMaxEpsg = 999'999;
+constexpr double kDefaultVoxelSize = 0.1;  // [m]
+
+struct BuildCommandOptions {
+  std::vector<std::filesystem::path> inputs;
+  std::optional<std::filesystem::path> poses;
+  ScanSelection selection;
+  std::optional<double> voxel_size;
+  std::vector<double> levels;
+  std::vector<double> anchor;
+  std::optional<int> epsg;
+  std::optional<std::int32_t> epoch;
+  MapOutput output;
+};
+
+void add_map_options(CLI::App& app, BuildCommandOptions& options) {
+  app.add_option(
+         "--voxel-size", options.voxel_size,
+         "Edge of the finest voxels [m]; without --levels, a level ten times as large is added where it divides "
+         "64 m")
+      ->type_name("S")
+      ->default_str("0.1");
+  add_number_list(app, "--levels", options.levels, 0, "S,S,...",
+                  "Edges of the voxels of all levels [m]: each divides 64 m and is a whole multiple of the one before")
+      ->default_str("0.1,1");
+  app.add_option("--epsg", options.epsg, "EPSG code of the coordinates (default: what LAS files say)")
+      ->check(CLI::Range(1, kMaxEpsg).description(""))
+      ->type_name("N");
+  add_number_list(app, "--anchor", options.anchor, 3, "X,Y,Z",
+                  "Origin of the map's local frame, multiples of 64 m (default: near the first point)");
+  app.add_option("--epoch", options.epoch, "Number of the survey, stored as first and last epoch of every voxel")
+      ->check(CLI::Range(0, std::numeric_limits<std::int32_t>::max()).description(""))
+      ->type_name("N");
+}
+
+void add_options(CLI::App& app, BuildCommandOptions& options) {
+  app.add_option("INPUTS", options.inputs,
+                 "Point files, and folders of them: PLY, PCD, LAS, KITTI .bin, XYZ/CSV, .pcap")
+      ->type_name("PATH")
+      ->required();
+  app.add_option("--poses", options.poses,
+                 "A pose for each scan (KITTI or TUM); without, the points are in map coordinates")
+      ->type_name("FILE");
+  add_scan_selection(app, options.selection);
+  add_map_options(app, options);
+  add_map_output(app, options.output);
+}
+
+// With a voxel size alone: a level ten times as large beside it, unless tiles of 64 m rule it out.
+std::vector<double> default_voxel_sizes(double voxel_size) {
+  BuildOptions both;
+  both.voxel_sizes = {voxel_size, 10 * voxel_size};
+  try {
+    both.check();
+    return both.voxel_sizes;
+  } catch (const std::invalid_argument&) {
+    return {voxel_size};
+  }
+}
+
+std::vector<double> chosen_voxel_sizes(const BuildCommandOptions& options) {
+  if (options.levels.empty()) return default_voxel_sizes(options.voxel_size.value_or(kDefaultVoxelSize));
+  if (options.voxel_size && *options.voxel_size != options.levels.front()) {
+    throw std::invalid_argument(
+        fmt::format("--voxel-size is {} but --levels begins with {}", *options.voxel_size, options.levels.front()));
+  }
+  return options.levels;
+}
+
+BuildOptions build_options(const BuildCommandOptions& options) {
+  BuildOptions build;
+  build.voxel_sizes = chosen_voxel_sizes(options);
+  if (!options.anchor.empty()) build.anchor = Eigen::Vector3d(options.anchor.data());
+  build.epsg = options.epsg;
+  build.epoch = options.epoch;
+  build.check();
+  return build;
+}
+
+MapFromFiles build(const std::vector<MapInput>& inputs, const BuildOptions& build_options,
+                   const CommonOptions& common) {
+  Progress progress("building from files", inputs.size(), common);
+  MapFromFilesOptions options;
+  options.build = build_options;
+  options.reads_ahead = common.num_threads != 1;
+  options.on_file_done = [&progress] { progress.advance(); };
+  return build_map_from_files(inputs, options);
+}
+
+void warn(const MapFromFiles& built) {
+  for (const ForeignUnit& unit : built.foreign_units) {
+    spdlog::warn("{}: its unit is {} m, but its coordinates are taken as metres", unit.file.string(),
+                 unit.metres_per_unit);
+  }
+  if (built.epsg_of_files && built.epsg_of_files != built.map.frame.epsg) {
+    spdlog::warn("the files are in EPSG:{}, the map says EPSG:{}", *built.epsg_of_files, *built.map.frame.epsg);
+  }
+}
+
+void print(const MapFromFiles& built, const std::filesystem::path& file, std::size_t num_files, double seconds,
+           bool as_json) {
+  if (as_json) {
+    nlohmann::ordered_json json = json_of_map(built.map, file);
+    json["files"] = num_files;
+    json["dropped_points"] = built.num_dropped;
+    json["seconds"] = seconds;
+    return print_json(json);
+  }
+  print_result(fmt::format("{}: built from {} {} in {:.1f} s\n", file.string(), num_files,
+                           num_files == 1 ? "file" : "files", seconds) +
+               (built.num_dropped > 0 ? fmt::format("dropped    {} points that are not finite\n", built.num_dropped)
+                                      : std::string()) +
+               text_of_map(built.map, file));
+}
+
+ExitCode run(const BuildCommandOptions& options, const CommonOptions& common) {
+  const auto start = std::chrono::steady_clock::now();
+  const BuildOptions checked_options = build_options(options);
+  const std::vector<std::filesystem::path> files = list_point_files(options.inputs);
+  std::vector<std::filesystem::path> read_files = files;
+  if (options.poses) read_files.push_back(*options.poses);
+  check_output(options.output.file, read_files);
+  const std::vector<MapInput> inputs = choose_inputs(files, options.selection, options.poses);
+
+  const MapFromFiles built = build(inputs, checked_options, common);
+  warn(built);
+  save_map(options.output.file, built.map, options.output.save);
+  const std::chrono::duration<double> elapsed = std::chrono::steady_clock::now() - start;
+  print(built, options.output.file, inputs.size(), elapsed.count(), common.json);
+  return ExitCode::kDone;
+}
+
+}  // namespace
+
+Command build_command() {
+  return make_command<BuildCommandOptions>(
+      "build", "Make a map of point clouds, or of scans with a pose each",
+      "vdbmap build street.las -o map.vdb\n"
+      "vdbmap build velodyne/ --poses poses.txt --every 2 -o map.vdb\n"
+      "vdbmap build a.ply b.ply --levels 0.05,0.5 --epsg 25832 --epoch 3 -o map.vdb",
+      add_options, run);
+}
+
+}  // namespace vdbmap::cli

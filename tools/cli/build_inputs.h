@@ -1,0 +1,19 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#pragma once
+
+#include <filesystem>
+#include <optional>
+#include <vector>
+
+#include "tools/cli/scan_selection.h"
+#include "vdbmap/io/map_from_files.h"
+
+namespace vdbmap::cli {
+
+/// The chosen files; with `poses`, each with the pose of its place in the sequence, and without those that have none,
+/// which is logged. Throws std::invalid_argument where no file is chosen, and IoError naming both counts where there
+/// are fewer poses than files, or where no chosen file has one.
+std::vector<MapInput> choose_inputs(const std::vector<std::filesystem::path>& files, const ScanSelection& selection,
+                                    const std::optional<std::filesystem::path>& poses);
+
+}  // namespace vdbmap::cli

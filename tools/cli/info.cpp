@@ -1,0 +1,102 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include <filesystem>
+#include <string>
+
+#include <nlohmann/json.hpp>
+#include <spdlog/fmt/fmt.h>
+
+#include "tools/cli/command.h"
+#include "tools/cli/map_summary.h"
+#include "tools/cli/output.h"
+#include "vdbmap/io/map_file.h"
+#include "vdbmap/io/vdb_description.h"
+
+namespace vdbmap::cli {
+namespace {
+
+using Json = nlohmann::ordered_json;
+
+struct InfoOptions {
+  std::filesystem::path file;
+};
+
+void add_options(CLI::App& app, InfoOptions& options) {
+  app.add_option("FILE", options.file, "A map, or a .vdb file of another program")->type_name("FILE")->required();
+}
+
+std::string text_of(const TextMetadata& metadata) {
+  std::string text;
+  for (const auto& [name, value] : metadata) text += fmt::format("  {}: {}\n", name, value);
+  return text;
+}
+
+std::string text_of(const openvdb::Coord& index) { return fmt::format("{} {} {}", index.x(), index.y(), index.z()); }
+
+std::string text_of(const GridDescription& grid) {
+  std::string text = fmt::format("grid '{}': {}, {}\n  {} active voxels", grid.name, grid.type, grid.grid_class,
+                                 grid.num_active_voxels);
+  if (const auto& box = grid.bounding_box) text += ", " + text_of(box->min()) + " to " + text_of(box->max());
+  const openvdb::Vec3d& size = grid.voxel_size;
+  text += fmt::format("\n  voxel size {:g} x {:g} x {:g}{}\n", size.x(), size.y(), size.z(),
+                      grid.is_linear ? "" : " at the origin");
+  return text + text_of(grid.metadata);
+}
+
+std::string text_of(const VdbDescription& description, const std::filesystem::path& file) {
+  std::string text = fmt::format("{}: an OpenVDB file, but not a map of vdbmap\n", file.string());
+  text += text_of(description.metadata);
+  for (const GridDescription& grid : description.grids) text += text_of(grid);
+  return text;
+}
+
+Json json_of(const TextMetadata& metadata) {
+  Json json = Json::object();
+  for (const auto& [name, value] : metadata) json[name] = value;
+  return json;
+}
+
+Json json_of(const openvdb::Coord& index) { return {index.x(), index.y(), index.z()}; }
+
+Json json_of(const GridDescription& grid) {
+  Json box;
+  if (grid.bounding_box) box = {{"min", json_of(grid.bounding_box->min())}, {"max", json_of(grid.bounding_box->max())}};
+  return {
+      {"name", grid.name},           {"type", grid.type},
+      {"class", grid.grid_class},    {"active_voxels", grid.num_active_voxels},
+      {"bounding_box", box},         {"voxel_size", {grid.voxel_size.x(), grid.voxel_size.y(), grid.voxel_size.z()}},
+      {"is_linear", grid.is_linear}, {"metadata", json_of(grid.metadata)}};
+}
+
+Json json_of(const VdbDescription& description, const std::filesystem::path& file) {
+  auto grids = Json::array();
+  for (const GridDescription& grid : description.grids) grids.push_back(json_of(grid));
+  return {{"file", file.string()}, {"is_map", false}, {"metadata", json_of(description.metadata)}, {"grids", grids}};
+}
+
+ExitCode run(const InfoOptions& options, const CommonOptions& common) {
+  const VdbDescription description = describe_vdb(options.file);
+  if (description.is_map) {
+    const VoxelMap map = load_map(options.file);
+    if (common.json) {
+      print_json(json_of_map(map, options.file));
+    } else {
+      print_result(options.file.string() + ": a map of vdbmap\n" + text_of_map(map, options.file));
+    }
+  } else if (common.json) {
+    print_json(json_of(description, options.file));
+  } else {
+    print_result(text_of(description, options.file));
+  }
+  return ExitCode::kDone;
+}
+
+}  // namespace
+
+Command info_command() {
+  return make_command<InfoOptions>("info", "Say what a map, or a .vdb file of another program, holds",
+                                   "vdbmap info map.vdb\n"
+                                   "vdbmap info smoke.vdb --json",
+                                   add_options, run);
+}
+
+}  // namespace vdbmap::cli

@@ -1,0 +1,46 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "tools/cli/map_output.h"
+
+#include <optional>
+#include <stdexcept>
+#include <string>
+#include <system_error>
+
+#include <CLI/Option.hpp>
+
+#include "vdbmap/io/atomic_file.h"
+#include "vdbmap/io/text.h"
+
+namespace vdbmap::cli {
+namespace {
+
+constexpr double kMaxDensity = 65504;  // the largest half-precision number, in which it is stored
+
+// CLI::Range lets nan pass.
+std::string check_density(const std::string& text) {
+  const std::optional<double> density = parse_number(text);
+  if (density && *density > 0 && *density <= kMaxDensity) return "";
+  return "is '" + text + "', expected a number above 0, at most 65504";
+}
+
+}  // namespace
+
+void add_map_output(CLI::App& app, MapOutput& output) {
+  app.add_option("-o,--output", output.file, "Write the map to this .vdb file")->type_name("FILE")->required();
+  app.add_option("--density", output.save.density, "Density of the fog that renderers see [1/m]")
+      ->check(check_density)
+      ->type_name("D")
+      ->capture_default_str();
+}
+
+void check_output(const std::filesystem::path& output, const std::vector<std::filesystem::path>& inputs) {
+  for (const std::filesystem::path& input : inputs) {
+    std::error_code missing;
+    if (std::filesystem::equivalent(output, input, missing)) {
+      throw std::invalid_argument(output.string() + ": is an input too, choose another output");
+    }
+  }
+  check_writable(output);
+}
+
+}  // namespace vdbmap::cli

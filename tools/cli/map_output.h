@@ -1,0 +1,26 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#pragma once
+
+#include <filesystem>
+#include <vector>
+
+#include <CLI/App.hpp>
+
+#include "vdbmap/io/map_file.h"
+
+namespace vdbmap::cli {
+
+/// Where a command writes its map, and how.
+struct MapOutput {
+  std::filesystem::path file;
+  SaveOptions save;
+};
+
+/// Declares --output and --density.
+void add_map_output(CLI::App& app, MapOutput& output);
+
+/// Before the work: throws std::invalid_argument where the output is one of the inputs, IoError where it cannot be
+/// written.
+void check_output(const std::filesystem::path& output, const std::vector<std::filesystem::path>& inputs);
+
+}  // namespace vdbmap::cli

@@ -1,0 +1,80 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include <filesystem>
+#include <stdexcept>
+#include <string>
+#include <vector>
+
+#include <nlohmann/json.hpp>
+#include <spdlog/fmt/fmt.h>
+
+#include "tools/cli/command.h"
+#include "tools/cli/map_output.h"
+#include "tools/cli/map_summary.h"
+#include "tools/cli/output.h"
+#include "tools/cli/progress.h"
+#include "vdbmap/core/error.h"
+#include "vdbmap/core/map_merge.h"
+#include "vdbmap/io/map_file.h"
+
+namespace vdbmap::cli {
+namespace {
+
+struct MergeOptions {
+  std::vector<std::filesystem::path> maps;
+  MapOutput output;
+};
+
+void add_options(CLI::App& app, MergeOptions& options) {
+  app.add_option("MAPS", options.maps, "Two or more maps; the first one's anchor is kept")
+      ->type_name("FILE")
+      ->required();
+  add_map_output(app, options.output);
+}
+
+// Maps that do not fit together are bad input, not wrong usage: the message names the file.
+VoxelMap merge_next(const VoxelMap& merged, const std::filesystem::path& file) {
+  const VoxelMap next = load_map(file);
+  try {
+    return merge_maps(merged, next);
+  } catch (const std::invalid_argument& error) {
+    throw IoError::malformed(file, error.what());
+  } catch (const std::out_of_range& error) {
+    throw IoError::malformed(file, error.what());
+  }
+}
+
+VoxelMap merge_files(const std::vector<std::filesystem::path>& files, const CommonOptions& common) {
+  Progress progress("merging maps", files.size(), common);
+  VoxelMap merged = load_map(files.front());
+  progress.advance();
+  for (std::size_t i = 1; i < files.size(); ++i) {
+    merged = merge_next(merged, files[i]);
+    progress.advance();
+  }
+  return merged;
+}
+
+ExitCode run(const MergeOptions& options, const CommonOptions& common) {
+  if (options.maps.size() < 2) throw std::invalid_argument("merge needs two maps or more");
+  check_output(options.output.file, options.maps);
+  const VoxelMap merged = merge_files(options.maps, common);
+  save_map(options.output.file, merged, options.output.save);
+  if (common.json) {
+    print_json(json_of_map(merged, options.output.file));
+  } else {
+    print_result(fmt::format("{}: merged from {} maps\n", options.output.file.string(), options.maps.size()) +
+                 text_of_map(merged, options.output.file));
+  }
+  return ExitCode::kDone;
+}
+
+}  // namespace
+
+Command merge_command() {
+  return make_command<MergeOptions>("merge", "Make one map of several, as if built from all their points",
+                                    "vdbmap merge a.vdb b.vdb -o both.vdb\n"
+                                    "vdbmap merge monday.vdb tuesday.vdb friday.vdb -o week.vdb",
+                                    add_options, run);
+}
+
+}  // namespace vdbmap::cli

@@ -1,0 +1,117 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "vdbmap/io/map_check.h"
+
+#include <algorithm>
+#include <array>
+#include <fstream>
+
+#include <openvdb/io/GridDescriptor.h>
+#include <openvdb/io/io.h>
+
+#include "vdbmap/core/error.h"
+#include "vdbmap/io/map_rules.h"
+#include "vdbmap/io/vdb_file.h"
+
+namespace vdbmap {
+namespace {
+
+struct Rule {
+  const char* name;
+  Finding (*check)(const CheckedFile&);
+};
+
+constexpr std::array kRules = {
+    Rule{"file_version", check_file_version},
+    Rule{"grid_offsets", check_grid_offsets},
+    Rule{"compression", check_compression},
+    Rule{"creator", check_creator},
+    Rule{"grid_names", check_grid_names},
+    Rule{"grid_types", check_grid_types},
+    Rule{"density_and_color", check_density_and_color},
+    Rule{"channel_types", check_channel_types},
+    Rule{"mean_offsets", check_mean_offsets},
+    Rule{"backgrounds", check_backgrounds},
+    Rule{"vector_types", check_vector_types},
+    Rule{"grid_classes", check_grid_classes},
+    Rule{"finite_values", check_finite_values},
+    Rule{"index_range", check_index_range},
+    Rule{"empty_leaves", check_empty_leaves},
+    Rule{"half_floats", check_half_floats},
+    Rule{"point_attributes", check_point_attributes},
+    Rule{"statistics", check_statistics},
+    Rule{"transforms", check_transforms},
+    Rule{"anchor", check_anchor_metadata},
+    Rule{"known_point", check_known_point},
+    Rule{"dense_size", check_dense_size},
+};
+
+template <typename Number>
+Number read_number(std::istream& stream) {
+  Number number{};
+  stream.read(reinterpret_cast<char*>(&number), sizeof(number));
+  return number;
+}
+
+// What OpenVDB's File does not tell: the version and the compression flags before each grid's data. The file was read
+// whole before, so its structure is sound.
+void read_raw_properties(CheckedFile& file) {
+  std::ifstream stream(file.path, std::ios::binary);
+  stream.exceptions(std::ios::failbit | std::ios::badbit);
+  stream.seekg(8);
+  file.version = read_number<std::uint32_t>(stream);
+  const auto library_major = read_number<std::uint32_t>(stream);
+  const auto library_minor = read_number<std::uint32_t>(stream);
+  file.has_grid_offsets = read_number<char>(stream) != 0;
+  if (!file.has_grid_offsets || file.version < openvdb::OPENVDB_FILE_VERSION_NODE_MASK_COMPRESSION) return;
+
+  openvdb::io::setVersion(stream, {library_major, library_minor}, file.version);
+  stream.seekg(57);
+  openvdb::MetaMap().readMeta(stream);
+  const auto num_grids = read_number<std::int32_t>(stream);
+  for (std::int32_t i = 0; i < num_grids; ++i) {
+    openvdb::io::GridDescriptor descriptor;
+    descriptor.read(stream);
+    descriptor.seekToGrid(stream);
+    file.compression.push_back(read_number<std::uint32_t>(stream));
+    descriptor.seekToEnd(stream);
+  }
+}
+
+CheckedFile read_checked_file(const std::filesystem::path& path) {
+  VdbContent content = read_vdb(path);
+  CheckedFile file;
+  file.path = path;
+  file.grids = std::move(content.grids);
+  file.metadata = std::move(content.metadata);
+  try {
+    read_raw_properties(file);
+  } catch (const std::ios_base::failure&) {
+    throw IoError::malformed(path, "ends within the list of its grids");
+  } catch (const openvdb::Exception& error) {
+    throw IoError::malformed(path, std::string("cannot be read as OpenVDB: ") + error.what());
+  }
+  return file;
+}
+
+RuleResult result_of(const Rule& rule, const CheckedFile& file) {
+  const Finding finding = rule.check(file);
+  if (finding.problems.empty()) return {rule.name, true, finding.remark};
+  std::string detail = finding.problems.front();
+  if (finding.problems.size() > 1) detail += " (and " + std::to_string(finding.problems.size() - 1) + " more)";
+  return {rule.name, false, detail};
+}
+
+}  // namespace
+
+std::vector<RuleResult> check_map_file(const std::filesystem::path& path) {
+  const CheckedFile file = read_checked_file(path);
+  std::vector<RuleResult> results;
+  for (const Rule& rule : kRules) results.push_back(result_of(rule, file));
+  return results;
+}
+
+bool all_passed(const std::vector<RuleResult>& results) {
+  return std::ranges::all_of(results, [](const RuleResult& result) { return result.passed; });
+}
+
+}  // namespace vdbmap

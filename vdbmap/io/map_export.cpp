@@ -1,0 +1,58 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "vdbmap/io/map_export.h"
+
+#include <algorithm>
+#include <cctype>
+#include <stdexcept>
+#include <string>
+
+#include "vdbmap/core/srgb.h"
+#include "vdbmap/io/las.h"
+#include "vdbmap/io/ply.h"
+#include "vdbmap/io/xyz.h"
+
+namespace vdbmap {
+namespace {
+
+Rgb16 srgb_of(const VoxelRecord& record) {
+  const Eigen::Vector3d linear = color_of(record);
+  return {srgb_from_linear(linear.x()), srgb_from_linear(linear.y()), srgb_from_linear(linear.z())};
+}
+
+}  // namespace
+
+PointCloud points_of_level(const VoxelMap& map, const VoxelLevel& level) {
+  PointCloud cloud;
+  cloud.positions.resize(level.size());
+  if (map.has_color) cloud.colors.resize(level.size());
+  cloud.intensities = level.channels().intensities;
+  parallel_for_each_voxel(level, [&](const VoxelIndex& voxel, std::size_t number) {
+    const VoxelRecord& record = level.records()[number];
+    cloud.positions[number] = map.frame.anchor + mean_of(record, voxel, level.voxel_size());
+    if (map.has_color) cloud.colors[number] = srgb_of(record);
+  });
+  return cloud;
+}
+
+PointFormat export_format(const std::filesystem::path& path) {
+  std::string extension = path.extension().string();
+  std::ranges::transform(extension, extension.begin(), [](unsigned char c) { return std::tolower(c); });
+  if (extension == ".ply") return PointFormat::kPly;
+  if (extension == ".las") return PointFormat::kLas;
+  if (extension == ".xyz") return PointFormat::kXyz;
+  throw std::invalid_argument(path.string() + ": extension is '" + extension + "', expected .ply, .las or .xyz");
+}
+
+void export_points(const std::filesystem::path& path, const VoxelMap& map, const VoxelLevel& level) {
+  const PointFormat format = export_format(path);
+  const PointCloud cloud = points_of_level(map, level);
+  if (format == PointFormat::kPly) {
+    write_ply(path, cloud);
+  } else if (format == PointFormat::kLas) {
+    write_las(path, cloud, {.epsg = map.frame.epsg});
+  } else {
+    write_xyz(path, cloud);
+  }
+}
+
+}  // namespace vdbmap

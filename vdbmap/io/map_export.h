@@ -1,0 +1,23 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#pragma once
+
+#include <filesystem>
+
+#include "vdbmap/core/point_cloud.h"
+#include "vdbmap/core/voxel_map.h"
+#include "vdbmap/io/point_format.h"
+
+namespace vdbmap {
+
+/// One point a voxel, in the order of the records: the mean in the original system, colour and intensity where the map
+/// has them.
+PointCloud points_of_level(const VoxelMap& map, const VoxelLevel& level);
+
+/// The format of a point file to be written: PLY, LAS or XYZ. Throws std::invalid_argument for any other extension.
+PointFormat export_format(const std::filesystem::path& path);
+
+/// Writes points_of_level() in the format of the extension; LAS with the EPSG code. Throws IoError, and
+/// std::invalid_argument as export_format() and write_las() do.
+void export_points(const std::filesystem::path& path, const VoxelMap& map, const VoxelLevel& level);
+
+}  // namespace vdbmap

@@ -1,0 +1,48 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#pragma once
+
+#include <cstddef>
+#include <filesystem>
+#include <functional>
+#include <optional>
+#include <vector>
+
+#include <Eigen/Geometry>
+
+#include "vdbmap/core/map_builder.h"
+
+namespace vdbmap {
+
+/// A point file and where its points lie.
+struct MapInput {
+  std::filesystem::path file;
+  std::optional<Eigen::Isometry3d> map_from_scan;  ///< nothing: the points are in map coordinates
+};
+
+struct MapFromFilesOptions {
+  BuildOptions build;                          ///< without `epsg`, that of the files in map coordinates is taken
+  bool reads_ahead = true;                     ///< a thread of its own reads the next file while one is folded
+  std::function<void()> on_file_done = [] {};  ///< called after each file
+};
+
+/// A file whose coordinates are not in metres.
+struct ForeignUnit {
+  std::filesystem::path file;
+  double metres_per_unit = 1.0;
+};
+
+/// A map, and what was noticed in the files.
+struct MapFromFiles {
+  VoxelMap map;
+  std::size_t num_points = 0;
+  std::size_t num_dropped = 0;             ///< points with a coordinate that is not finite
+  std::optional<int> epsg_of_files;        ///< of the files in map coordinates, where one says so
+  std::vector<ForeignUnit> foreign_units;  ///< taken as they are, as if in metres
+};
+
+/// The map of all points in the files. At most two files' points are in memory at once. Throws IoError naming the file
+/// that cannot be read, lies beyond the addressable range, or has another EPSG code than one before; and
+/// std::invalid_argument for no inputs or bad options.
+MapFromFiles build_map_from_files(const std::vector<MapInput>& inputs, const MapFromFilesOptions& options = {});
+
+}  // namespace vdbmap
