@@ -54,12 +54,12 @@ median_text() {
 
 milliseconds() { median_text "$1" "$2" real_time "${3:-0}" ' ms'; }
 
-# How many times as long the second row takes as the first.
+# How many times as long the third argument's row takes as the second's: benchmark file, rows, field.
 ratio() {
   local ours peer
-  ours=$(median "$1" "$2")
-  peer=$(median "$1" "$3")
-  if [[ -n $ours && -n $peer ]]; then awk -v a="$ours" -v b="$peer" 'BEGIN { printf "%.1f times vdbmap", b / a }'; fi
+  ours=$(median "$1" "$2" "$4")
+  peer=$(median "$1" "$3" "$4")
+  if [[ -n $ours && -n $peer ]]; then awk -v a="$ours" -v b="$peer" 'BEGIN { printf "%.1f times", b / a }'; fi
 }
 
 tabulate_building() {
@@ -70,10 +70,11 @@ tabulate_building() {
         "$(milliseconds map_benchmark "build_map/$cloud/threads:$threads")" \
         "$(median_text map_benchmark "build_map/$cloud/threads:$threads" voxels 0 ' voxels')"
     done
-    peer=$(milliseconds map_benchmark "open3d_voxel_down_sample/$cloud")
-    if [[ -z $peer ]]; then continue; fi
-    row "  Open3D voxel_down_sample (1 thread)" "$peer" \
-      "$(ratio map_benchmark "build_map/$cloud/threads:2" "open3d_voxel_down_sample/$cloud") with 2 threads"
+    peer=open3d_voxel_down_sample/$cloud
+    if [[ -z $(median map_benchmark "$peer") ]]; then continue; fi
+    row "  Open3D voxel_down_sample, 1 thread" "$(milliseconds map_benchmark "$peer")" \
+      "$(ratio map_benchmark "build_map/$cloud/threads:2" "$peer" real_time) vdbmap with 2 threads,\
+ $(ratio map_benchmark "build_map/$cloud/threads:1" "$peer" cpu_time) with 1 by CPU time"
   done
   row "build the drive scan by scan, 2 threads" "$(milliseconds map_benchmark build_from_scans/threads:2)"
   row "read its scans" "$(milliseconds map_benchmark read_scans)"
@@ -97,7 +98,8 @@ tabulate_fine() {
   for name in align_scan/threads:1 align_scan/threads:2 open3d_icp/threads:2 open3d_icp_with_kept_tree/threads:2; do
     if [[ -z $(median fine_benchmark "$name") ]]; then continue; fi
     row "fine, one scan, $name" "$(milliseconds fine_benchmark "$name" 1)" \
-      "error $(median_text fine_benchmark "$name" median_m 4 ' m'), at most\
+      "$(median_text fine_benchmark "$name" cpu_ms 1 ' ms') CPU;\
+ error $(median_text fine_benchmark "$name" median_m 4 ' m'), at most\
  $(median_text fine_benchmark "$name" max_m 3 ' m'); found $(median_text fine_benchmark "$name" found_share 2)"
   done
 }

@@ -48,7 +48,8 @@ Matrix6d motion_covariance(std::span<const PlaneMatch> matches, std::span<const 
   Vector6d prior_variance;
   prior_variance << Eigen::Vector3d::Constant(kGuessRotation * kGuessRotation),
       Eigen::Vector3d::Constant(kGuessTranslation * kGuessTranslation);
-  const double noise = filling.trace() / std::max(bread.trace(), 1e-12);
+  constexpr double kMinNoise = 1e-12;  // [m^2] a micrometre: even perfect or missing matches leave the prior in place
+  const double noise = std::max(filling.trace() / std::max(bread.trace(), 1e-12), kMinNoise);
   const Matrix6d prior = (noise * prior_variance.cwiseInverse()).asDiagonal();
   const Matrix6d inverse = (bread + prior).ldlt().solve(Matrix6d::Identity());
   const Matrix6d covariance = inverse * (filling + noise * prior) * inverse;

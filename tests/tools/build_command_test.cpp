@@ -124,8 +124,9 @@ TEST_F(Build, LevelsFollowTheVoxelSize) {
   const auto levels = [&](const std::vector<std::string>& options) {
     std::vector<std::string> arguments = {"build", cloud, "-o", path("map.vdb")};
     arguments.insert(arguments.end(), options.begin(), options.end());
+    const json build = json_of(arguments);
     std::vector<double> sizes;
-    for (const json& level : json_of(arguments)["levels"]) sizes.push_back(level["voxel_size_m"]);
+    for (const json& level : build["levels"]) sizes.push_back(level["voxel_size_m"]);
     return sizes;
   };
   EXPECT_EQ(levels({}), (std::vector<double>{0.1, 1}));

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include <functional>
+#include <ostream>
 #include <string>
 #include <vector>
 
@@ -17,12 +18,15 @@ namespace {
 using test::read_raw;
 using test::write_raw;
 
-// Inputs that are wrong, each with what the one line must say.
+// An input that is wrong, and what the one line must say of it.
 struct BrokenInput {
   std::string name;
   std::string part;
   std::function<std::vector<std::string>(const test::TemporaryFolder&)> write;  // returns the command's inputs
 };
+
+// GoogleTest prints parameters.
+std::ostream& operator<<(std::ostream& stream, const BrokenInput& input) { return stream << input.name; }
 
 std::string truncated(const std::filesystem::path& path, std::size_t num_bytes) {
   const std::string bytes = read_raw(path);
@@ -52,7 +56,7 @@ std::vector<BrokenInput> broken_inputs() {
        }},
       {"OnlyNan", "bad.xyz: none of the 2 points is finite",
        [](const Folder& f) { return Arguments{write_raw(f / "bad.xyz", "nan nan nan\n1 inf 1\n")}; }},
-      {"Truncated", "bad.ply: ",
+      {"Truncated", "bad.ply:3: the header promises 100 elements",
        [](const Folder& f) {
          write_ply(f / "bad.ply", scan(1, 100));
          return Arguments{truncated(f / "bad.ply", 1)};
@@ -67,7 +71,7 @@ std::vector<BrokenInput> broken_inputs() {
          write_ply(f / "good.ply", scan(1, 100));
          return Arguments{f / "good.ply", write_raw(f / "bad.ply", "ply\n")};
        }},
-      {"BeyondTheRange", "far.ply: point 200000 0 0 is more than 104857.6 m from the anchor",
+      {"BeyondTheRange", "m from the anchor, the farthest that voxel ids reach",
        [](const Folder& f) {
          write_ply(f / "far.ply", points({{0, 0, 0}, {200'000, 0, 0}}));
          return Arguments{f / "far.ply"};

@@ -46,8 +46,8 @@ struct Scaler {
 [[noreturn]] void throw_unaddressable(const Eigen::Vector3d& point, double voxels_per_metre) {
   std::ostringstream message;
   message.precision(10);
-  message << "point " << point.transpose() << " is more than " << kIndexLimit / voxels_per_metre
-          << " m from the anchor, the farthest that voxel ids reach";
+  message << "point " << point.x() << ", " << point.y() << ", " << point.z() << " is more than "
+          << kIndexLimit / voxels_per_metre << " m from the anchor, the farthest that voxel ids reach";
   throw std::out_of_range(message.str());
 }
 
@@ -60,8 +60,9 @@ KeyedPoint keyed_point(const Eigen::Array3d& scaled, std::uint32_t source) {
   const VoxelIndex voxel = voxel_of_scaled(scaled);
   KeyedPoint point{key_in_block(voxel), source, {}};
   for (int axis = 0; axis < 3; ++axis) {
-    const double share = scaled[axis] - voxel[axis];  // [0, 1)
-    point.quantum[axis] = static_cast<std::int16_t>(static_cast<std::int32_t>(share * kQuantaPerVoxel) - 32768);
+    const double share = scaled[axis] - voxel[axis];  // [0, 1]: a hair below 0 lies in voxel -1, and rounds to its end
+    const auto quantum = std::min(static_cast<std::int32_t>(share * kQuantaPerVoxel), 65535);
+    point.quantum[axis] = static_cast<std::int16_t>(quantum - 32768);
   }
   return point;
 }
@@ -170,16 +171,23 @@ void add_point(VoxelSums& sums, const KeyedPoint& point) {
   sums.product[5] += y * z;
 }
 
+// Beyond these an intensity is damage, and would overflow the sum: it does not count.
+void add_intensity(VoxelSums& sums, double intensity) {
+  constexpr double kLimit = 1e7;
+  if (!(std::abs(intensity) <= kLimit)) return;
+  ++sums.num_with_intensity;
+  sums.intensity += std::llround(intensity * 65536.0);
+}
+
 void add_attributes(VoxelSums& sums, const PointCloud& cloud, std::size_t source) {
   if (!cloud.colors.empty()) {
     const Rgb16& color = cloud.colors[source];
+    ++sums.num_colored;
     sums.color[0] += linear_from_srgb(color.r);
     sums.color[1] += linear_from_srgb(color.g);
     sums.color[2] += linear_from_srgb(color.b);
   }
-  if (!cloud.intensities.empty()) {
-    sums.intensity += std::llround(static_cast<double>(cloud.intensities[source]) * 65536.0);
-  }
+  if (!cloud.intensities.empty()) add_intensity(sums, cloud.intensities[source]);
 }
 
 BlockSums fold_block(std::span<KeyedPoint> points, const PointCloud& cloud, std::size_t begin) {

@@ -39,7 +39,8 @@ void check_anchor(const Eigen::Vector3d& anchor) {
   const bool whole = anchor.allFinite() && tiles.array().round().isApprox(tiles.array(), 1e-12);
   if (whole && anchor.cwiseAbs().maxCoeff() < 1e9) return;
   std::ostringstream message;
-  message << "anchor is " << anchor.transpose() << ", expected whole multiples of " << kTileSize << " m below 1e9 m";
+  message << "anchor is " << anchor.x() << ", " << anchor.y() << ", " << anchor.z() << ", expected whole multiples of "
+          << kTileSize << " m below 1e9 m";
   throw std::invalid_argument(message.str());
 }
 

@@ -72,11 +72,18 @@ float round_covariance(double value) {
 
 void set_normal(VoxelRecord& record, const Eigen::Vector3d& normal) {
   // The code keeps three signs and |x|, |y| as 126ths of |x|+|y|+|z|. OpenVDB's pack() rounds down, which tilts every
-  // normal towards z; rounding to the nearest halves the error and takes out the bias.
+  // normal towards z. Here all three are rounded to the nearest, and where they do not add up to 126 the one farthest
+  // from its value gives way: the nearest code, without bias.
   const Eigen::Array3d scaled = normal.array().abs() * (126.0 / normal.lpNorm<1>());
-  auto x = static_cast<unsigned>(std::lround(scaled.x()));
-  auto y = static_cast<unsigned>(std::lround(scaled.y()));
-  if (x + y > 126) --(x > y ? x : y);
+  Eigen::Array3d steps = scaled.round();
+  const double excess = steps.sum() - 126;
+  if (excess != 0) {
+    Eigen::Index farthest = 0;
+    ((steps - scaled) * excess).maxCoeff(&farthest);
+    steps[farthest] -= excess;
+  }
+  auto x = static_cast<unsigned>(steps.x());
+  auto y = static_cast<unsigned>(steps.y());
   if (x > 63) {
     x = 127 - x;
     y = 127 - y;

@@ -49,11 +49,11 @@ Eigen::Vector3d color_of(const VoxelRecord& record);
 /// Stores count, mean and covariance; the mean is clamped to the voxel, the covariance rounded by round_covariance().
 void set_moments(VoxelRecord& record, const Moments& moments, const VoxelIndex& voxel, double voxel_size);
 
-/// A covariance element [m^2] rounded to 16 bits of mantissa (8e-6 of its value): far below what the points determine,
+/// A covariance element [m^2] rounded to 16 bits (1.5e-5 of its value at most): far below what the points determine,
 /// and the byte it frees compresses away in the file.
 float round_covariance(double value);
 
-/// Stores a unit normal, to 0.6 degrees.
+/// Stores a unit normal, to 0.65 degrees.
 void set_normal(VoxelRecord& record, const Eigen::Vector3d& normal);
 
 /// Stores a linear colour, clamped to 0..1.

@@ -25,7 +25,9 @@ void VoxelSums::add(const VoxelSums& other) {
   count += other.count;
   for (int i = 0; i < 3; ++i) position[i] += other.position[i];
   for (int i = 0; i < 6; ++i) product[i] += other.product[i];
+  num_colored += other.num_colored;
   for (int i = 0; i < 3; ++i) color[i] += other.color[i];
+  num_with_intensity += other.num_with_intensity;
   intensity += other.intensity;
 }
 
@@ -39,7 +41,12 @@ VoxelRecord record_of(const VoxelSums& sums, double voxel_size) {
     // A quantum stands for its middle, half a quantum above its lower end.
     const double share = (static_cast<double>(sums.position[axis]) / n + 0.5) / kQuantaPerVoxel + 0.5;
     record.mean_code[axis] = static_cast<std::uint16_t>(share * kMeanSteps);
-    record.color_code[axis] = static_cast<std::uint16_t>(static_cast<double>(sums.color[axis]) / n + 0.5);
+  }
+  if (sums.num_colored > 0) {
+    const auto num_colored = static_cast<double>(sums.num_colored);
+    for (int i = 0; i < 3; ++i) {
+      record.color_code[i] = static_cast<std::uint16_t>(static_cast<double>(sums.color[i]) / num_colored + 0.5);
+    }
   }
   if (sums.count > 1) {
     const double quantum = voxel_size / kQuantaPerVoxel;
@@ -50,7 +57,9 @@ VoxelRecord record_of(const VoxelSums& sums, double voxel_size) {
 }
 
 float intensity_of(const VoxelSums& sums) {
-  return static_cast<float>(static_cast<double>(sums.intensity) / (65536.0 * static_cast<double>(sums.count)));
+  if (sums.num_with_intensity == 0) return 0;
+  return static_cast<float>(static_cast<double>(sums.intensity) /
+                            (65536.0 * static_cast<double>(sums.num_with_intensity)));
 }
 
 }  // namespace vdbmap

@@ -17,7 +17,9 @@ struct VoxelSums {
   std::int64_t count = 0;
   std::array<std::int64_t, 3> position{};  ///< [quanta]
   std::array<std::int64_t, 6> product{};   ///< xx yy zz xy xz yz [quanta^2]
+  std::int64_t num_colored = 0;            ///< points that have a colour
   std::array<std::int64_t, 3> color{};     ///< linear, 65535 is 1
+  std::int64_t num_with_intensity = 0;     ///< points that have an intensity
   std::int64_t intensity = 0;              ///< [2^-16 of the source's unit]
 
   void add(const VoxelSums& other);
@@ -29,7 +31,7 @@ inline constexpr double kQuantaPerVoxel = 65536.0;
 /// The record of the sums, without a normal.
 VoxelRecord record_of(const VoxelSums& sums, double voxel_size);
 
-/// Mean intensity in the source's unit.
+/// Mean intensity in the source's unit; 0 where no point has one.
 float intensity_of(const VoxelSums& sums);
 
 }  // namespace vdbmap

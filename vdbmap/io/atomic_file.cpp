@@ -57,6 +57,10 @@ int create_beside(const std::filesystem::path& target, std::filesystem::path& te
 
 AtomicFile::AtomicFile(std::filesystem::path target) : target_(std::move(target)) {
   if (std::filesystem::is_directory(target_)) throw IoError::system(target_, "cannot create", EISDIR);
+  // A rename would put a file in the place of a device or pipe.
+  if (std::filesystem::exists(target_) && !std::filesystem::is_regular_file(target_)) {
+    throw IoError::system(target_, "cannot replace what is no regular file", EINVAL);
+  }
   descriptor_ = create_beside(target_, temporary_);
   remember_unfinished(temporary_.string());
 }

@@ -3,12 +3,7 @@
 
 #include <algorithm>
 #include <array>
-#include <fstream>
 
-#include <openvdb/io/GridDescriptor.h>
-#include <openvdb/io/io.h>
-
-#include "vdbmap/core/error.h"
 #include "vdbmap/io/map_rules.h"
 #include "vdbmap/io/vdb_file.h"
 
@@ -45,52 +40,10 @@ constexpr std::array kRules = {
     Rule{"dense_size", check_dense_size},
 };
 
-template <typename Number>
-Number read_number(std::istream& stream) {
-  Number number{};
-  stream.read(reinterpret_cast<char*>(&number), sizeof(number));
-  return number;
-}
-
-// What OpenVDB's File does not tell: the version and the compression flags before each grid's data. The file was read
-// whole before, so its structure is sound.
-void read_raw_properties(CheckedFile& file) {
-  std::ifstream stream(file.path, std::ios::binary);
-  stream.exceptions(std::ios::failbit | std::ios::badbit);
-  stream.seekg(8);
-  file.version = read_number<std::uint32_t>(stream);
-  const auto library_major = read_number<std::uint32_t>(stream);
-  const auto library_minor = read_number<std::uint32_t>(stream);
-  file.has_grid_offsets = read_number<char>(stream) != 0;
-  if (!file.has_grid_offsets || file.version < openvdb::OPENVDB_FILE_VERSION_NODE_MASK_COMPRESSION) return;
-
-  openvdb::io::setVersion(stream, {library_major, library_minor}, file.version);
-  stream.seekg(57);
-  openvdb::MetaMap().readMeta(stream);
-  const auto num_grids = read_number<std::int32_t>(stream);
-  for (std::int32_t i = 0; i < num_grids; ++i) {
-    openvdb::io::GridDescriptor descriptor;
-    descriptor.read(stream);
-    descriptor.seekToGrid(stream);
-    file.compression.push_back(read_number<std::uint32_t>(stream));
-    descriptor.seekToEnd(stream);
-  }
-}
-
 CheckedFile read_checked_file(const std::filesystem::path& path) {
+  VdbOutline outline = read_vdb_outline(path);
   VdbContent content = read_vdb(path);
-  CheckedFile file;
-  file.path = path;
-  file.grids = std::move(content.grids);
-  file.metadata = std::move(content.metadata);
-  try {
-    read_raw_properties(file);
-  } catch (const std::ios_base::failure&) {
-    throw IoError::malformed(path, "ends within the list of its grids");
-  } catch (const openvdb::Exception& error) {
-    throw IoError::malformed(path, std::string("cannot be read as OpenVDB: ") + error.what());
-  }
-  return file;
+  return {path, std::move(outline), std::move(content.grids), std::move(content.metadata)};
 }
 
 RuleResult result_of(const Rule& rule, const CheckedFile& file) {

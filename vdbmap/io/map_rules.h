@@ -1,22 +1,21 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #pragma once
 
-#include <cstdint>
 #include <filesystem>
 #include <string>
 #include <vector>
 
 #include <openvdb/openvdb.h>
 
+#include "vdbmap/io/vdb_outline.h"
+
 /// The single rules of check_map_file().
 namespace vdbmap {
 
-/// A .vdb file with what its raw bytes say beside the grids.
+/// A .vdb file with what its headers say beside the grids.
 struct CheckedFile {
   std::filesystem::path path;
-  std::uint32_t version = 0;
-  bool has_grid_offsets = false;           ///< whether single grids can be read
-  std::vector<std::uint32_t> compression;  ///< flags of each grid, in the order of the file; empty where unknown
+  VdbOutline outline;
   openvdb::GridPtrVec grids;
   openvdb::MetaMap::Ptr metadata;
 };

@@ -46,26 +46,27 @@ openvdb::GridBase::ConstPtr find_grid(const CheckedFile& file, const std::string
 }
 
 Finding check_file_version(const CheckedFile& file) {
-  Finding finding{{}, std::to_string(file.version)};
-  if (file.version == kFileVersion) return finding;
-  finding.problems.push_back("file version is " + std::to_string(file.version) + ", expected " +
+  Finding finding{{}, std::to_string(file.outline.version)};
+  if (file.outline.version == kFileVersion) return finding;
+  finding.problems.push_back("file version is " + std::to_string(file.outline.version) + ", expected " +
                              std::to_string(kFileVersion));
   return finding;
 }
 
 Finding check_grid_offsets(const CheckedFile& file) {
-  if (file.has_grid_offsets) return {};
+  if (file.outline.has_grid_offsets) return {};
   return {{"written as a stream: single grids cannot be read"}, ""};
 }
 
 Finding check_compression(const CheckedFile& file) {
   using namespace openvdb::io;
   Finding finding;
-  if (file.compression.size() != file.grids.size()) finding.problems.push_back("unknown");
-  for (const std::uint32_t flags : file.compression) {
+  if (!file.outline.has_grid_offsets) finding.problems.push_back("unknown");
+  for (const VdbGridOutline& grid : file.outline.grids) {
+    const std::uint32_t flags = grid.compression;
     finding.remark = compressionToString(flags);
     if ((flags & COMPRESS_ACTIVE_MASK) && (flags & (COMPRESS_BLOSC | COMPRESS_ZIP))) continue;
-    finding.problems.push_back("a grid has compression '" + compressionToString(flags) +
+    finding.problems.push_back("grid '" + grid.name + "' has compression '" + compressionToString(flags) +
                                "', expected active values with blosc or zip");
   }
   return finding;

@@ -11,40 +11,37 @@
 
 #include "vdbmap/core/error.h"
 #include "vdbmap/io/atomic_file.h"
+#include "vdbmap/io/vdb_outline.h"
 
 namespace vdbmap {
 namespace {
 
-// Header of a .vdb file: 8 bytes magic number, 4 file version, 8 library version, 1 grid offsets, then the id.
+// After 8 bytes magic number, 4 file version, 8 library version and 1 grid offsets comes the id.
 constexpr std::size_t kIdBegin = 21;
 constexpr std::size_t kIdSize = 36;
-constexpr std::string_view kMagic(" BDV\0\0\0\0", 8);
 // An id that begins so is the checksum of the rest: "vdbmap" in ASCII codes.
 constexpr std::string_view kIdPrefix = "7664626d-6170-";
 
-// What the first bytes of a file say.
-struct Header {
-  bool is_vdb = false;
-  std::string id;
+// The archive that openvdb::io::File writes, into a stream of ours: File itself does not see a full disk.
+class SeekableArchive : public openvdb::io::Archive {
+ public:
+  void write_to(std::ostream& stream, const openvdb::GridCPtrVec& grids, const openvdb::MetaMap& metadata) const {
+    Archive::write(stream, grids, /*seekable=*/true, metadata);
+  }
 };
 
 std::ifstream open_for_reading(const std::filesystem::path& path) {
-  if (std::filesystem::is_directory(path)) throw IoError::system(path, "cannot read", EISDIR);
   std::ifstream stream(path, std::ios::binary);
   if (!stream) throw IoError::system(path, "cannot open", errno);
   return stream;
 }
 
-Header read_header(const std::filesystem::path& path) {
+std::string read_id(const std::filesystem::path& path) {
   std::ifstream stream = open_for_reading(path);
-  std::string bytes(kIdBegin + kIdSize, '\0');
-  stream.read(bytes.data(), static_cast<std::streamsize>(bytes.size()));
-  bytes.resize(static_cast<std::size_t>(stream.gcount()));
-
-  Header header;
-  header.is_vdb = std::string_view(bytes).substr(0, kMagic.size()) == kMagic;
-  if (bytes.size() == kIdBegin + kIdSize) header.id = bytes.substr(kIdBegin);
-  return header;
+  std::string id(kIdSize, '\0');
+  stream.seekg(kIdBegin);
+  stream.read(id.data(), kIdSize);
+  return id;
 }
 
 // The id that belongs to the content of a file: its checksum without the id itself, in the form of a UUID.
@@ -70,18 +67,29 @@ std::string id_of_content(const std::filesystem::path& path) {
   return id.data();
 }
 
+void write_grids(const std::filesystem::path& path, const openvdb::GridCPtrVec& grids,
+                 const openvdb::MetaMap& metadata) {
+  SeekableArchive archive;
+  archive.setCompression(openvdb::io::COMPRESS_ACTIVE_MASK | openvdb::io::COMPRESS_BLOSC);
+  std::ofstream stream(path, std::ios::binary | std::ios::trunc);
+  stream.exceptions(std::ios::badbit | std::ios::failbit);
+  archive.write_to(stream, grids, metadata);
+  stream.close();
+}
+
 void replace_id(const std::filesystem::path& path) {
   const std::string id = id_of_content(path);
   std::fstream stream(path, std::ios::binary | std::ios::in | std::ios::out);
+  stream.exceptions(std::ios::badbit | std::ios::failbit);
   stream.seekp(kIdBegin);
-  stream.write(id.data(), static_cast<std::streamsize>(id.size()));
-  if (!stream.flush()) throw IoError::system(path, "cannot write", errno);
+  stream.write(id.data(), kIdSize);
+  stream.close();
 }
 
+// A file of ours is compared with its checksum.
 void check_content(const std::filesystem::path& path) {
-  const Header header = read_header(path);
-  if (!header.is_vdb) throw IoError::malformed(path, "is not an OpenVDB file");
-  if (header.id.starts_with(kIdPrefix) && header.id != id_of_content(path)) {
+  const std::string id = read_id(path);
+  if (id.starts_with(kIdPrefix) && id != id_of_content(path)) {
     throw IoError::malformed(path, "is damaged: its content does not match its checksum");
   }
 }
@@ -89,6 +97,7 @@ void check_content(const std::filesystem::path& path) {
 }  // namespace
 
 VdbContent read_vdb(const std::filesystem::path& path) {
+  read_vdb_outline(path);
   check_content(path);
   openvdb::initialize();
   try {
@@ -107,13 +116,13 @@ void write_vdb(const std::filesystem::path& path, const openvdb::GridCPtrVec& gr
   openvdb::initialize();
   AtomicFile target(path);
   try {
-    openvdb::io::File file(target.temporary_path().string());
-    file.setCompression(openvdb::io::COMPRESS_ACTIVE_MASK | openvdb::io::COMPRESS_BLOSC);
-    file.write(grids, metadata);
+    write_grids(target.temporary_path(), grids, metadata);
+    replace_id(target.temporary_path());
+  } catch (const std::ios_base::failure&) {
+    throw IoError::system(path, "cannot write", errno);
   } catch (const openvdb::Exception& error) {
     throw IoError::system(path, std::string("cannot write (") + error.what() + ")", errno);
   }
-  replace_id(target.temporary_path());
   target.commit();
 }
 

@@ -63,11 +63,8 @@ TEST(Observability, ACorridorDoesNotHoldTheScanAlongIt) {
   ASSERT_EQ(directions.size(), 1U);
   EXPECT_NEAR(std::abs(directions[0].motion[3]), 1, 1e-9);
   EXPECT_NEAR(directions[0].motion.norm(), 1, 1e-12);
-  EXPECT_TRUE(directions[0].description == "translation along (1.00, 0.00, 0.00)" ||
-              directions[0].description == "translation along (-1.00, -0.00, -0.00)" ||
-              directions[0].description.find("translation along (1.00") == 0 ||
-              directions[0].description.find("translation along (-1.00") == 0)
-      << directions[0].description;
+  EXPECT_EQ(directions[0].description.find("translation along ("), 0U) << directions[0].description;
+  EXPECT_NE(directions[0].description.find("1.00, "), std::string::npos) << directions[0].description;
 }
 
 TEST(Observability, ATurnedCorridorIsNamedInTheAxesOfTheMap) {
@@ -80,12 +77,11 @@ TEST(Observability, ATurnedCorridorIsNamedInTheAxesOfTheMap) {
 }
 
 TEST(Observability, APlaneAloneLeavesThreeDirectionsOpen) {
-  const Eigen::Vector3d sensor = inside().translation();
   const auto directions = unobservable({{{-20, -20, 0}, {40, 0, 0}, {0, 40, 0}}}, inside());
   ASSERT_EQ(directions.size(), 3U);
   for (const UnobservableDirection& direction : directions) {
-    EXPECT_NEAR(direction.motion.segment<2>(0).norm(), 0, 1e-6) << sensor.transpose();  // no tilt is open
-    EXPECT_NEAR(direction.motion[5], 0, 1e-6);                                          // nor the height
+    EXPECT_NEAR(direction.motion.segment<2>(0).norm(), 0, 1e-6);  // no tilt is open
+    EXPECT_NEAR(direction.motion[5], 0, 1e-6);                    // nor the height
   }
 }
 
@@ -99,7 +95,7 @@ TEST(Observability, ARoundRoomDoesNotHoldTheHeading) {
   scene.push_back({{-4, -4, 0}, {8, 0, 0}, {0, 8, 0}});
   const Matches exact = exact_matches(scene, 20, Eigen::Isometry3d(Eigen::Translation3d(0, 0, 1.5)));
   const auto directions = unobservable_directions(exact.matches, exact.weights, exact.map_from_scan);
-  // The floor holds a tenth as much as one wall each: the height counts its share of the weights.
+  // One of 201 surfaces is the floor; its share of the weights, 0.07 of root mean square, still holds the height.
   ASSERT_EQ(directions.size(), 1U);
   EXPECT_GT(std::abs(directions[0].motion[2]), 0.999);
   EXPECT_EQ(directions[0].description.find("rotation about"), 0U) << directions[0].description;

@@ -10,6 +10,7 @@
 #include "tests/support/sample_maps.h"
 #include "tests/support/threads.h"
 #include "vdbmap/core/map_builder.h"
+#include "vdbmap/core/voxel_sums.h"
 
 namespace vdbmap {
 namespace {

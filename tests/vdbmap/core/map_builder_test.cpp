@@ -14,6 +14,7 @@
 #include "tests/support/sanitizers.h"
 #include "tests/support/threads.h"
 #include "vdbmap/core/srgb.h"
+#include "vdbmap/core/voxel_sums.h"
 
 namespace vdbmap {
 namespace {
@@ -280,6 +281,30 @@ TEST(MapBuilder, IntensitiesAreAveraged) {
     const double mean = sum / static_cast<double>(voxels.at(voxel).size());
     EXPECT_NEAR(intensities[number], mean, mean * 1e-7 + 1e-5);  // a float; points counted in 2^-16
   });
+}
+
+TEST(MapBuilder, PointsWithoutAttributesDoNotCountAmongThoseThatHaveThem) {
+  PointCloud plain = cloud_of(std::vector<Eigen::Vector3d>(3, Eigen::Vector3d(0.02, 0.02, 0.02)));
+  PointCloud known = cloud_of({{0.08, 0.08, 0.08}});
+  known.colors = {{65535, 0, 65535}};
+  known.intensities = {42};
+  MapBuilder builder(anchored({0, 0, 0}));
+  builder.add(plain);
+  builder.add(known);
+  const VoxelMap map = builder.finish();
+  ASSERT_EQ(map.finest().size(), 1U);
+  EXPECT_EQ(map.finest().records()[0].count, 4U);
+  EXPECT_EQ(color_of(map.finest().records()[0]), Eigen::Vector3d(1, 0, 1));
+  EXPECT_EQ(map.finest().channels().intensities, std::vector<float>{42});
+}
+
+TEST(MapBuilder, IntensitiesThatAreDamageDoNotCount) {
+  PointCloud cloud = cloud_of(std::vector<Eigen::Vector3d>(6, Eigen::Vector3d(0.02, 0.02, 0.02)));
+  const float infinity = std::numeric_limits<float>::infinity();
+  cloud.intensities = {3, std::nanf(""), infinity, -infinity, 1e30f, 5};
+  const VoxelMap map = build_map(cloud, anchored({0, 0, 0}));
+  EXPECT_EQ(map.finest().records()[0].count, 6U);
+  EXPECT_EQ(map.finest().channels().intensities, std::vector<float>{4});
 }
 
 TEST(MapBuilder, AttributesNobodyGaveAreAbsent) {

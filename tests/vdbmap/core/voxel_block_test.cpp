@@ -31,12 +31,12 @@ std::vector<VoxelIndex> in_key_order(std::vector<VoxelIndex> voxels) {
 class VoxelBlockOrder : public testing::TestWithParam<std::int32_t> {};
 
 TEST_P(VoxelBlockOrder, IsTheOrderOfTheTree) {
-  const std::vector<VoxelIndex> voxels = test::random_voxels(3000, -GetParam(), GetParam() - 1, 1);
+  const std::vector<VoxelIndex> voxels = test::random_voxels(800, -GetParam(), GetParam() - 1, 1);
   EXPECT_EQ(in_key_order(voxels), in_tree_order(voxels));
 }
 
 TEST_P(VoxelBlockOrder, IsTheOrderOfTheWholeVoxelKey) {
-  std::vector<VoxelIndex> voxels = test::random_voxels(3000, -GetParam(), GetParam() - 1, 2);
+  std::vector<VoxelIndex> voxels = test::random_voxels(800, -GetParam(), GetParam() - 1, 2);
   std::sort(voxels.begin(), voxels.end(),
             [](const VoxelIndex& a, const VoxelIndex& b) { return key_of_voxel(a) < key_of_voxel(b); });
   EXPECT_EQ(voxels, in_tree_order(voxels));

@@ -49,7 +49,9 @@ TEST(VoxelFinder, FindsEveryVoxelAndNothingElse) {
         const auto expected = dense.numbers.find({x, y, z});
         const VoxelRecord* record = finder.find({x, y, z});
         ASSERT_EQ(record != nullptr, expected != dense.numbers.end()) << VoxelIndex(x, y, z);
-        if (record) EXPECT_EQ(record->count, expected->second);
+        if (record) {
+          EXPECT_EQ(record->count, expected->second);
+        }
       }
     }
   }
