@@ -112,8 +112,9 @@ measure_accuracy() {
     -o "$results/poses.txt"
   vdbmap evaluate "$results/poses.txt" "$data/poses.txt" --every 2 --offset 1 --json > "$results/accuracy.json"
 
-  row "localize: scans within 0.10 m and 0.3 deg" "$(jq -r '(100 * ([.poses[] | select(. != null and .rotation_deg <= 0.3
-    and (.xy_m * .xy_m + .z_m * .z_m) <= 0.01)] | length) / .num_poses | tostring) + " %"' "$results/accuracy.json")" \
+  row "localize: scans within 0.10 m and 0.3 deg" \
+    "$(jq -r '(100 * ([.poses[] | select(. != null and .rotation_deg <= 0.3
+      and .xy_m * .xy_m + .z_m * .z_m <= 0.01)] | length) / .num_poses | tostring) + " %"' "$results/accuracy.json")" \
     "of $(jq -r .num_poses "$results/accuracy.json")"
   row "localize: median error" "$(jq -r '.translation_m.median * 1e4 | round / 1e4' "$results/accuracy.json") m" \
     "at most $(jq -r '.translation_m.max * 1e4 | round / 1e4' "$results/accuracy.json") m"
@@ -133,23 +134,25 @@ repeat_drive() {
   done > "$results/copies/poses.txt"
 }
 
-# Prints "seconds kilobytes" of the middle one of three runs.
+# Prints "seconds user system kilobytes" of the middle one of three runs.
 time_build() {
   for _ in 1 2 3; do
-    /usr/bin/time --quiet --format '%e %M' --output "$results/time.txt" "$build/bin/vdbmap" build \
-      "$results/copies/velodyne" --poses "$results/copies/poses.txt" -o "$results/copies.vdb" > "$results/build.log" 2>&1
+    /usr/bin/time --quiet --format '%e %U %S %M' --output "$results/time.txt" "$build/bin/vdbmap" build \
+      "$results/copies/velodyne" --poses "$results/copies/poses.txt" -o "$results/copies.vdb" \
+      > "$results/build.log" 2>&1
     cat "$results/time.txt"
   done | sort -n | sed -n 2p
 }
 
 measure_scaling() {
-  local times seconds kilobytes voxels
+  local times seconds user system kilobytes voxels
   for times in 1 2 4 8; do
     repeat_drive "$times"
-    read -r seconds kilobytes < <(time_build)
+    read -r seconds user system kilobytes < <(time_build)
     voxels=$(vdbmap info "$results/copies.vdb" --json | jq '.levels[0].voxels')
     row "vdbmap build, $times times the drive" "$seconds s" \
-      "$((kilobytes / 1024)) MB at the peak, $((kilobytes * 1024 / voxels)) B a voxel, $voxels voxels"
+      "$(awk -v a="$user" -v b="$system" 'BEGIN { printf "%.1f", a + b }') s CPU, $((kilobytes / 1024)) MB at the\
+ peak, $((kilobytes * 1024 / voxels)) B a voxel, $voxels voxels"
   done
   rm -rf "$results/copies" "$results/copies.vdb"
 }

@@ -58,9 +58,7 @@ class MapFile : public testing::Test {
 };
 
 // Bytes 21 to 56 of a .vdb file are its id; ours is a checksum, any other id is not compared with anything.
-std::string with_foreign_id(std::string bytes) {
-  return bytes.replace(21, 36, "01234567-89ab-4def-8123-456789abcdef");
-}
+std::string with_foreign_id(std::string bytes) { return bytes.replace(21, 36, "01234567-89ab-4def-8123-456789abcdef"); }
 
 TEST_F(MapFile, ComesBackBitForBit) {
   for (const VoxelMap& map : {test::sample_map(), test::sample_map_without_attributes()}) {
