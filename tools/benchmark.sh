@@ -49,7 +49,7 @@ median() {
 median_text() {
   local value
   value=$(median "$1" "$2" "$3")
-  if [[ -n $value ]]; then printf "%.$4f$5" "$value"; fi
+  if [[ -n $value ]]; then printf "%.$4f%s" "$value" "${5:-}"; fi
 }
 
 milliseconds() { median_text "$1" "$2" real_time "${3:-0}" ' ms'; }

@@ -15,7 +15,7 @@
 namespace vdbmap::benchmarks {
 namespace {
 
-constexpr double kDensity = 400;                      // [points / m^2]
+constexpr double kDensity = 500;                      // [points / m^2]
 constexpr double kNoise = 0.005;                      // [m] standard deviation across the surface
 constexpr double kBlockLength = 60;                   // [m] of street made at once
 const Eigen::Vector3d kOrigin(691000, 5334000, 515);  // [m] as in UTM

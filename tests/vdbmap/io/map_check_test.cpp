@@ -144,12 +144,12 @@ TEST_F(MapCheck, GridOffsets) {
 TEST_F(MapCheck, Compression) {
   EXPECT_EQ(failed_after([](VdbContent&) {}, [](const auto& path, const auto& content) { write_as(path, content, 0); }),
             "compression");
-  if (!openvdb::io::Archive::hasZLibCompression()) GTEST_SKIP() << "OpenVDB was built without zlib";
+  // OpenVDB leaves fog volumes uncompressed where zip is asked for, and so `density`.
   EXPECT_EQ(failed_after([](VdbContent&) {},
                          [](const auto& path, const auto& content) {
                            write_as(path, content, openvdb::io::COMPRESS_ACTIVE_MASK | openvdb::io::COMPRESS_ZIP);
                          }),
-            "");
+            "compression");
 }
 
 TEST_F(MapCheck, Creator) {
