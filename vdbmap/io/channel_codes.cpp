@@ -34,8 +34,8 @@ openvdb::Vec3f normal_value_of(const VoxelRecord& record) {
 void set_normal_value(VoxelRecord& record, const openvdb::Vec3f& normal) {
   Eigen::Vector3d direction(normal.x(), normal.y(), normal.z());
   if (direction.z() < 0) direction = -direction;
-  // A code has a sign for x and y even where they are 0; decoded, that is a negative zero.
-  for (int axis = 0; axis < 2; ++axis) {
+  // A code has a sign for each component even where it is 0; decoded, that is a negative zero.
+  for (int axis = 0; axis < 3; ++axis) {
     if (direction[axis] == 0 && std::signbit(direction[axis])) direction[axis] = -1e-12 * direction.norm();
   }
   set_normal(record, direction);
