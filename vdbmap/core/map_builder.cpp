@@ -28,6 +28,7 @@ struct FinestParts {
 struct MapBuilder::State {
   BuildOptions options;
   double voxels_per_metre = 0;
+  std::optional<Eigen::Vector3d> anchor;  // from the options, else chosen by the first point
   std::map<BlockKey, BlockSums> blocks;
   std::size_t num_points = 0;
   bool has_color = false;
@@ -51,17 +52,19 @@ void BuildOptions::check() const {
 MapBuilder::MapBuilder(BuildOptions options) : state_(std::make_unique<State>()) {
   options.check();
   state_->voxels_per_metre = voxels_per_metre(options.voxel_sizes.front());
+  state_->anchor = options.anchor;
   state_->options = std::move(options);
 }
 
 MapBuilder::~MapBuilder() = default;
 MapBuilder::MapBuilder(MapBuilder&&) noexcept = default;
+MapBuilder& MapBuilder::operator=(MapBuilder&&) noexcept = default;
 
 std::size_t MapBuilder::num_points() const { return state_->num_points; }
 
 void MapBuilder::add(const PointCloud& cloud, const Eigen::Isometry3d& map_from_cloud) {
   if (cloud.empty()) return;
-  std::optional<Eigen::Vector3d>& anchor = state_->options.anchor;
+  std::optional<Eigen::Vector3d>& anchor = state_->anchor;
   if (!anchor) anchor = choose_anchor(map_from_cloud * cloud.positions.front());
 
   Eigen::Isometry3d local_from_cloud = map_from_cloud;
@@ -123,12 +126,12 @@ VoxelLevel MapBuilder::State::take_finest_level() {
 
 VoxelMap MapBuilder::finish() {
   VoxelMap map;
-  map.frame.anchor = state_->options.anchor.value_or(Eigen::Vector3d::Zero());
+  map.frame.anchor = state_->anchor.value_or(Eigen::Vector3d::Zero());
   map.frame.epsg = state_->options.epsg;
   map.has_color = state_->has_color;
   map.levels.push_back(state_->take_finest_level());
   add_coarser_levels(map, state_->options.voxel_sizes);
-  state_->num_points = 0;
+  *this = MapBuilder(state_->options);
   return map;
 }
 

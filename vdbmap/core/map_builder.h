@@ -26,13 +26,15 @@ struct BuildOptions {
 };
 
 /// Collects points and makes a map of them. Memory grows with the voxels, not with the points. The map is the same, bit
-/// for bit, for any order of the points, any cut into calls and any number of threads.
+/// for bit, for any order of the points, any cut into calls and any number of threads, as long as the anchor is the
+/// same: one that is not given depends on the very first point.
 class MapBuilder {
  public:
   /// Throws std::invalid_argument for bad options.
   explicit MapBuilder(BuildOptions options);
   ~MapBuilder();
   MapBuilder(MapBuilder&&) noexcept;
+  MapBuilder& operator=(MapBuilder&&) noexcept;
 
   /// Adds the points of a cloud moved by `map_from_cloud` (original system). Throws std::out_of_range for a point
   /// whose voxel index does not fit 21 bits, naming the point; the builder is then unusable.
@@ -41,7 +43,7 @@ class MapBuilder {
   /// Number of points added.
   std::size_t num_points() const;
 
-  /// The map of all points added, normals included; the builder is empty afterwards.
+  /// The map of all points added, normals included; the builder is as new afterwards.
   VoxelMap finish();
 
  private:

@@ -36,7 +36,7 @@ std::optional<Extent> extent(const VoxelMap& map) {
 
 void check_anchor(const Eigen::Vector3d& anchor) {
   const Eigen::Vector3d tiles = anchor / kTileSize;
-  const bool whole = anchor.allFinite() && tiles.array().round().isApprox(tiles.array(), 1e-12);
+  const bool whole = anchor.allFinite() && (tiles.array().round() == tiles.array()).all();
   if (whole && anchor.cwiseAbs().maxCoeff() < 1e9) return;
   std::ostringstream message;
   message << "anchor is " << anchor.x() << ", " << anchor.y() << ", " << anchor.z() << ", expected whole multiples of "

@@ -349,5 +349,22 @@ TEST(MapBuilder, CloudsOfSeveralChunksAreCountedWhole) {
   EXPECT_NEAR(covariance_of(map.finest().records()[0])(0, 0), variance, 1e-4 * variance);
 }
 
+TEST(MapBuilder, StartsAnewAfterFinish) {
+  PointCloud colored;
+  colored.positions = {{5000, 0, 0}};
+  colored.colors = {{1, 2, 3}};
+  PointCloud plain;
+  plain.positions = {{1, 0, 0}};
+
+  MapBuilder builder{BuildOptions()};
+  builder.add(colored);
+  EXPECT_EQ(builder.finish().frame.anchor.x(), 5120);
+  builder.add(plain);
+  const VoxelMap second = builder.finish();
+  EXPECT_EQ(second.frame.anchor.x(), 0);
+  EXPECT_FALSE(second.has_color);
+  EXPECT_EQ(second.finest().size(), 1u);
+}
+
 }  // namespace
 }  // namespace vdbmap
