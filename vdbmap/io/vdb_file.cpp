@@ -107,8 +107,10 @@ VdbContent read_vdb(const std::filesystem::path& path) {
     content.grids = *file.getGrids();
     content.metadata = file.getMetadata();
     return content;
-  } catch (const openvdb::Exception& error) {
-    throw IoError::malformed(path, std::string("cannot be read as OpenVDB: ") + error.what());
+  } catch (const std::exception& error) {  // damage also ends in bad_alloc, and in messages of kilobytes
+    constexpr std::size_t kMaxMessage = 80;
+    const std::string message = std::string(error.what()).substr(0, kMaxMessage);
+    throw IoError::malformed(path, "cannot be read as OpenVDB: " + message);
   }
 }
 
