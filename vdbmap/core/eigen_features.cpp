@@ -10,15 +10,6 @@
 namespace vdbmap {
 namespace {
 
-// Upwards, and where the surface is upright towards positive x, then y: one sign for one plane.
-Eigen::Vector3d canonical_sign(const Eigen::Vector3d& normal) {
-  constexpr double kUpright = 1e-6;
-  for (const int axis : {2, 0, 1}) {
-    if (std::abs(normal[axis]) > kUpright) return normal[axis] > 0 ? normal : Eigen::Vector3d(-normal);
-  }
-  return normal;
-}
-
 double entropy_term(double share) { return share > 0 ? -share * std::log(share) : 0; }
 
 }  // namespace
@@ -49,9 +40,17 @@ PlaneFit fit_plane(const Eigen::Matrix3d& covariance) {
 
   PlaneFit plane;
   if (!(values[2] > 0)) return plane;
-  plane.normal = canonical_sign(solver.eigenvectors().col(0));
+  plane.normal = upward(solver.eigenvectors().col(0));
   plane.planarity = std::clamp((values[1] - values[0]) / values[2], 0.0, 1.0);
   return plane;
+}
+
+Eigen::Vector3d upward(const Eigen::Vector3d& normal) {
+  constexpr double kUpright = 1e-6;
+  for (const int axis : {2, 0, 1}) {
+    if (std::abs(normal[axis]) > kUpright) return normal[axis] > 0 ? normal : Eigen::Vector3d(-normal);
+  }
+  return normal;
 }
 
 }  // namespace vdbmap

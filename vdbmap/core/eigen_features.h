@@ -31,4 +31,8 @@ struct PlaneFit {
 /// Normal and planarity of a covariance [m^2]; planarity 0 where it has no extent.
 PlaneFit fit_plane(const Eigen::Matrix3d& covariance);
 
+/// The normal with the one sign that stands for its plane: up, and where the plane is upright towards positive x, then
+/// y.
+Eigen::Vector3d upward(const Eigen::Vector3d& normal);
+
 }  // namespace vdbmap

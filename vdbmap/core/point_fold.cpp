@@ -179,15 +179,11 @@ void add_intensity(VoxelSums& sums, double intensity) {
   sums.intensity += std::llround(intensity * 65536.0);
 }
 
-void add_attributes(VoxelSums& sums, const PointCloud& cloud, std::size_t source) {
-  if (!cloud.colors.empty()) {
-    const Rgb16& color = cloud.colors[source];
-    ++sums.num_colored;
-    sums.color[0] += linear_from_srgb(color.r);
-    sums.color[1] += linear_from_srgb(color.g);
-    sums.color[2] += linear_from_srgb(color.b);
-  }
-  if (!cloud.intensities.empty()) add_intensity(sums, cloud.intensities[source]);
+void add_color(VoxelSums& sums, const Rgb16& color, std::span<const std::uint16_t> linear) {
+  ++sums.num_colored;
+  sums.color[0] += linear[color.r];
+  sums.color[1] += linear[color.g];
+  sums.color[2] += linear[color.b];
 }
 
 BlockSums fold_block(std::span<KeyedPoint> points, const PointCloud& cloud, std::size_t begin) {
@@ -195,13 +191,17 @@ BlockSums fold_block(std::span<KeyedPoint> points, const PointCloud& cloud, std:
   std::size_t num_voxels = 0;
   for (std::size_t i = 0; i < points.size(); ++i) num_voxels += i == 0 || points[i].key != points[i - 1].key;
 
-  const bool has_attributes = !cloud.colors.empty() || !cloud.intensities.empty();
+  const std::span<const std::uint16_t> linear = linear_from_srgb_table();
+  const bool has_color = !cloud.colors.empty();
+  const bool has_intensity = !cloud.intensities.empty();
   BlockSums voxels;
   voxels.reserve(num_voxels);
+  KeyedSums* voxel = nullptr;
   for (const KeyedPoint& point : points) {
-    if (voxels.empty() || voxels.back().key != point.key) voxels.push_back({point.key, {}});
-    add_point(voxels.back().sums, point);
-    if (has_attributes) add_attributes(voxels.back().sums, cloud, begin + point.source);
+    if (!voxel || voxel->key != point.key) voxel = &voxels.emplace_back(KeyedSums{point.key, {}});
+    add_point(voxel->sums, point);
+    if (has_color) add_color(voxel->sums, cloud.colors[begin + point.source], linear);
+    if (has_intensity) add_intensity(voxel->sums, cloud.intensities[begin + point.source]);
   }
   return voxels;
 }

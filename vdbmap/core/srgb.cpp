@@ -26,9 +26,9 @@ std::vector<std::uint16_t> make_table() {
 
 }  // namespace
 
-std::uint16_t linear_from_srgb(std::uint16_t srgb) {
+std::span<const std::uint16_t> linear_from_srgb_table() {
   static const std::vector<std::uint16_t> table = make_table();
-  return table[srgb];
+  return table;
 }
 
 std::uint16_t srgb_from_linear(double linear) {

@@ -32,7 +32,11 @@ static_assert(sizeof(VoxelRecord) == 44);
 Eigen::Matrix3d covariance_of(const VoxelRecord& record);
 
 /// Mean point [m, local frame] of the voxel at `voxel`.
-Eigen::Vector3d mean_of(const VoxelRecord& record, const VoxelIndex& voxel, double voxel_size);
+inline Eigen::Vector3d mean_of(const VoxelRecord& record, const VoxelIndex& voxel, double voxel_size) {
+  const auto& code = record.mean_code;  // a step stands for its middle
+  const Eigen::Vector3d steps(code[0] + 0.5, code[1] + 0.5, code[2] + 0.5);
+  return corner_of_voxel(voxel, voxel_size) + steps * (voxel_size / kMeanSteps);
+}
 
 /// Count, mean [m, local frame] and scatter [m^2].
 Moments moments_of(const VoxelRecord& record, const VoxelIndex& voxel, double voxel_size);
