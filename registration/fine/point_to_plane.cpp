@@ -23,22 +23,6 @@ constexpr double kTrustedInlierShare = 0.5;
 // Headings tried around the guess; each catches 3 degrees on either side.
 constexpr std::array kHeadings_deg = {0.0, -5.0, 5.0, -10.0, 10.0};
 
-// A scan ready for alignment: evenly thinned, densely for the finest level, thinly for the coarser ones.
-struct SampledScan {
-  std::vector<Eigen::Vector3d> fine;
-  std::vector<Eigen::Vector3d> coarse;
-  std::vector<Eigen::Vector3d> near;  // those of `coarse` that a wrong heading moves least
-};
-
-SampledScan sample_scan(const PointCloud& scan, const FineOptions& options) {
-  constexpr double kNearRange = 20;  // [m]
-  SampledScan sample;
-  sample.fine = sample_points(scan.positions, options.fine_spacing, options.range);
-  sample.coarse = sample_points(sample.fine, options.coarse_spacing, options.range);
-  sample.near = sample_points(sample.coarse, options.coarse_spacing, {options.range.min, kNearRange});
-  return sample;
-}
-
 // Stages from wide to narrow: kernels start at the distance the stage has to bridge and shrink to the level's noise.
 MatchingStage near_stage(const VoxelLevel& level, std::span<const Eigen::Vector3d> points) {
   return {&level, points, {.search_voxels = 2, .min_planarity = 0.5, .plane_from_voxel = true}, {3.0, 3.0, 1.0}, 10};
@@ -158,23 +142,30 @@ void FineOptions::check() const {
   require(max_iterations > 0, "max_iterations", max_iterations, "1 or more");
 }
 
-FineResult align_scan(const PointCloud& scan, const VoxelMap& map, const Eigen::Isometry3d& map_from_scan_guess,
-                      const FineOptions& options) {
+FineResult align_sample(const SampledScan& sample, const VoxelMap& map, const Eigen::Isometry3d& map_from_scan_guess,
+                        const FineOptions& options) {
   options.check();
   check_guess(map_from_scan_guess);
   if (map.levels.empty()) throw std::invalid_argument("the map has no levels");
 
-  const SampledScan sample = sample_scan(scan, options);
   Eigen::Isometry3d guess = map_from_scan_guess;
   guess.translation() -= map.frame.anchor;
 
+  if (options.start_wide) guess = run_rounds(wide_stage(map.coarsest(), sample.coarse), guess).local_from_scan;
   RoundsResult rounds = align_through_levels(sample, map, guess, options);
   const double share = inlier_share(rounds, sample.fine.size());
-  if (share < kTrustedInlierShare || is_far(rounds.local_from_scan, guess)) {
+  if (options.search_headings && (share < kTrustedInlierShare || is_far(rounds.local_from_scan, guess))) {
     RoundsResult other = align_with_headings(sample, map, guess, options);
     if (inlier_share(other, sample.fine.size()) > share) rounds = std::move(other);
   }
   return report(rounds, sample, map);
+}
+
+FineResult align_scan(const PointCloud& scan, const VoxelMap& map, const Eigen::Isometry3d& map_from_scan_guess,
+                      const FineOptions& options) {
+  options.check();
+  const SampledScan sample = sample_scan(scan.positions, options.fine_spacing, options.coarse_spacing, options.range);
+  return align_sample(sample, map, map_from_scan_guess, options);
 }
 
 }  // namespace vdbmap::registration

@@ -19,6 +19,8 @@ struct FineOptions {
   double fine_spacing = 1.0;    ///< [m] of the points used on the finest level; 0.5 m is no better on KITTI streets
   RangeLimits range;
   int max_iterations = 15;  ///< rounds of matching and solving on each level
+  bool start_wide = false;  ///< begins with residuals of 3 m on the coarsest level: for guesses of the coarse search
+  bool search_headings = true;  ///< other headings are tried where few points fit; not needed within 1 m and 3 degrees
 
   /// Throws std::invalid_argument naming the value and what is allowed.
   void check() const;
@@ -40,6 +42,10 @@ struct FineResult {
 /// guess up to 2 m and 10 degrees off (Mortazavi 2023, section 2.4: fine registration). Ceres solves each round. The
 /// result is the same for any number of threads. Throws std::invalid_argument for a guess that is not finite or not a
 /// rotation.
+FineResult align_sample(const SampledScan& sample, const VoxelMap& map, const Eigen::Isometry3d& map_from_scan_guess,
+                        const FineOptions& options = {});
+
+/// As align_sample(), for all points of a scan.
 FineResult align_scan(const PointCloud& scan, const VoxelMap& map, const Eigen::Isometry3d& map_from_scan_guess,
                       const FineOptions& options = {});
 

@@ -51,4 +51,14 @@ std::vector<Eigen::Vector3d> sample_points(std::span<const Eigen::Vector3d> poin
   return sample;
 }
 
+SampledScan sample_scan(std::span<const Eigen::Vector3d> points_in_scan, double fine_spacing, double coarse_spacing,
+                        const RangeLimits& limits) {
+  constexpr double kNearRange = 20;  // [m]
+  SampledScan sample;
+  sample.fine = sample_points(points_in_scan, fine_spacing, limits);
+  sample.coarse = sample_points(sample.fine, coarse_spacing, limits);
+  sample.near = sample_points(sample.coarse, coarse_spacing, {limits.min, kNearRange});
+  return sample;
+}
+
 }  // namespace vdbmap::registration

@@ -19,4 +19,15 @@ struct RangeLimits {
 std::vector<Eigen::Vector3d> sample_points(std::span<const Eigen::Vector3d> points_in_scan, double spacing,
                                            const RangeLimits& limits);
 
+/// A scan ready for alignment: evenly thinned, densely for the finest level, thinly for the coarser ones.
+struct SampledScan {
+  std::vector<Eigen::Vector3d> fine;    ///< [m] in the frame of the scan, as are the others
+  std::vector<Eigen::Vector3d> coarse;  ///< some of `fine`
+  std::vector<Eigen::Vector3d> near;    ///< those of `coarse` that a wrong heading moves least
+};
+
+/// Thins a scan for both kinds of levels; spacings in metres.
+SampledScan sample_scan(std::span<const Eigen::Vector3d> points_in_scan, double fine_spacing, double coarse_spacing,
+                        const RangeLimits& limits);
+
 }  // namespace vdbmap::registration

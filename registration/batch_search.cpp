@@ -1,0 +1,129 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "registration/batch_search.h"
+
+#include <algorithm>
+#include <cmath>
+#include <sstream>
+#include <stdexcept>
+
+#include <Eigen/Eigenvalues>
+
+#include "vdbmap/core/parallel.h"
+
+namespace vdbmap::registration {
+namespace {
+
+// Of the hypotheses, the most that are aligned: the true one has been the first or second on every street tried.
+constexpr std::size_t kMaxAligned = 6;
+
+std::string percent(double share) { return std::to_string(std::lround(100 * share)) + " %"; }
+
+BatchCandidate align(const CombinedScans& combined, const VoxelMap& map, const PoseHypothesis& hypothesis) {
+  FineOptions options;
+  options.start_wide = true;
+  options.search_headings = false;
+  Eigen::Isometry3d map_from_batch = hypothesis.target_from_source;
+  map_from_batch.translation() += map.frame.anchor;
+  const FineResult fine = align_sample(combined.sample, map, map_from_batch, options);
+
+  BatchCandidate candidate;
+  candidate.map_from_batch = fine.map_from_scan;
+  candidate.num_feature_inliers = hypothesis.num_inliers;
+  candidate.evidence = weigh(combined.sample.fine, combined.rays, map, fine.map_from_scan);
+  candidate.covariance = fine.covariance;
+  return candidate;
+}
+
+std::vector<BatchCandidate> align_all(const CombinedScans& combined, const VoxelMap& map,
+                                      std::span<const PoseHypothesis> hypotheses) {
+  std::vector<BatchCandidate> candidates(std::min(hypotheses.size(), kMaxAligned));
+  parallel_for(candidates.size(), [&](std::size_t i) { candidates[i] = align(combined, map, hypotheses[i]); });
+  std::stable_sort(candidates.begin(), candidates.end(), [](const BatchCandidate& a, const BatchCandidate& b) {
+    return a.evidence.explained_share() > b.evidence.explained_share();
+  });
+  return candidates;
+}
+
+Eigen::Vector3d center_of(std::span<const Eigen::Vector3d> points) {
+  Eigen::Vector3d sum = Eigen::Vector3d::Zero();
+  for (const Eigen::Vector3d& point : points) sum += point;
+  return points.empty() ? sum : Eigen::Vector3d(sum / static_cast<double>(points.size()));
+}
+
+// Of candidates that came to the same place only the best stays.
+std::vector<BatchCandidate> without_repetitions(std::vector<BatchCandidate> candidates, const Eigen::Vector3d& center) {
+  std::vector<BatchCandidate> distinct;
+  for (BatchCandidate& candidate : candidates) {
+    const bool known = std::any_of(distinct.begin(), distinct.end(), [&](const BatchCandidate& other) {
+      return are_alike(other.map_from_batch, candidate.map_from_batch, center);
+    });
+    if (!known) distinct.push_back(std::move(candidate));
+  }
+  return distinct;
+}
+
+// Standard deviation of the place in its least certain direction [m].
+double greatest_deviation(const Matrix6d& covariance) {
+  const Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d> solver(covariance.bottomRightCorner<3, 3>().eval(),
+                                                              Eigen::EigenvaluesOnly);
+  return std::sqrt(std::max(solver.eigenvalues()[2], 0.0));
+}
+
+// Why the best candidate is not believed; empty when it is.
+std::string reason_not_found(std::span<const BatchCandidate> candidates, const VerdictOptions& verdict) {
+  if (candidates.empty()) return "no features agree with the map";
+  const BatchCandidate& best = candidates.front();
+  if (best.evidence.overlap < verdict.min_overlap) {
+    return "only " + percent(best.evidence.overlap) + " of the points have the map near by";
+  }
+  if (best.evidence.inlier_share < verdict.min_inlier_share) {
+    return "only " + percent(best.evidence.inlier_share) + " of the points lie on the map's surfaces";
+  }
+  if (best.evidence.precision < verdict.min_precision) {
+    return "only " + percent(best.evidence.precision) + " of its surfaces fit those of the map to 5 cm";
+  }
+  if (best.evidence.blocked_share > verdict.max_blocked_share) {
+    return percent(best.evidence.blocked_share) + " of the rays would pass through solid map";
+  }
+  if (greatest_deviation(best.covariance) > verdict.max_deviation) return "the map does not determine its place";
+  if (candidates.size() < 2) return "";
+  const double margin = best.evidence.explained_share() / std::max(candidates[1].evidence.explained_share(), 1e-6);
+  if (margin >= verdict.min_margin) return "";
+  return "another pose explains nearly as many points: " + percent(candidates[1].evidence.explained_share()) +
+         " beside " + percent(best.evidence.explained_share());
+}
+
+}  // namespace
+
+void VerdictOptions::check() const {
+  const auto require = [](bool condition, const char* name, double value, const char* allowed) {
+    if (condition) return;
+    std::ostringstream message;
+    message << name << " is " << value << ", expected " << allowed;
+    throw std::invalid_argument(message.str());
+  };
+  require(min_overlap >= 0 && min_overlap <= 1, "min_overlap", min_overlap, "0 to 1");
+  require(min_inlier_share >= 0 && min_inlier_share <= 1, "min_inlier_share", min_inlier_share, "0 to 1");
+  require(min_precision >= 0 && min_precision <= 1, "min_precision", min_precision, "0 to 1");
+  require(max_blocked_share >= 0 && max_blocked_share <= 1, "max_blocked_share", max_blocked_share, "0 to 1");
+  require(max_deviation > 0, "max_deviation", max_deviation, "more than 0 m");
+  require(min_margin >= 1, "min_margin", min_margin, "1 or more");
+}
+
+BatchResult find_batch(const CombinedScans& combined, const VoxelMap& map, const CoarseMap& coarse_map,
+                       const CoarseOptions& coarse, const VerdictOptions& verdict) {
+  verdict.check();
+  BatchResult result;
+  if (combined.sample.fine.size() < verdict.min_points) {
+    result.reason = "too few points: " + std::to_string(combined.sample.fine.size()) + " of " +
+                    std::to_string(verdict.min_points) + " needed, 1.5 m apart";
+    return result;
+  }
+  const std::vector<PoseHypothesis> hypotheses = find_coarse(combined.level, coarse_map, coarse);
+  const Eigen::Vector3d center = center_of(combined.sample.fine);
+  result.candidates = without_repetitions(align_all(combined, map, hypotheses), center);
+  result.reason = reason_not_found(result.candidates, verdict);
+  return result;
+}
+
+}  // namespace vdbmap::registration

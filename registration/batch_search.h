@@ -1,0 +1,58 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#pragma once
+
+#include <span>
+#include <string>
+#include <vector>
+
+#include "registration/coarse/coarse.h"
+#include "registration/evidence.h"
+#include "registration/fine/point_to_plane.h"
+#include "registration/fine/scan_sample.h"
+#include "vdbmap/core/voxel_map.h"
+
+namespace vdbmap::registration {
+
+/// When a pose found without a guess is believed.
+struct VerdictOptions {
+  double min_overlap = 0.3;        ///< share of the points that have the map near by
+  double min_inlier_share = 0.25;  ///< of the overlapping points: on a plane of the map
+  double min_precision = 0.72;     ///< Evidence::precision; on KITTI streets true poses reach 0.80, others stay at 0.63
+  double max_blocked_share = 0.6;  ///< of the rays: through solid map; what has moved since blocks some
+  double min_margin = 1.2;         ///< points explained, by those of the next best pose
+  double max_deviation = 0.25;     ///< [m] standard deviation of the place in its least certain direction
+  std::size_t min_points = 200;    ///< sampled points of a batch, 1.5 m apart
+
+  /// Throws std::invalid_argument naming the value and what is allowed.
+  void check() const;
+};
+
+/// Scans of a batch joined by odometry, ready to be looked for. The frame is that of the batch.
+struct CombinedScans {
+  VoxelLevel level;    ///< voxels as large as the map's coarsest
+  SampledScan sample;  ///< all scans together
+  std::vector<Ray> rays;
+};
+
+/// A pose of the batch, aligned as well as may be.
+struct BatchCandidate {
+  Eigen::Isometry3d map_from_batch = Eigen::Isometry3d::Identity();  ///< original system
+  std::size_t num_feature_inliers = 0;                               ///< of the coarse search
+  Evidence evidence;
+  Matrix6d covariance = Matrix6d::Zero();  ///< as FineResult::covariance
+};
+
+/// Where a batch lies, or why that is not known.
+struct BatchResult {
+  std::vector<BatchCandidate> candidates;  ///< the best first, no two alike
+  std::string reason;                      ///< empty when found
+
+  bool found() const { return reason.empty(); }
+};
+
+/// Looks for a batch in the whole map: coarse hypotheses, each aligned on all levels, compared with each other, and the
+/// best of them judged. `coarse_map` belongs to the map's coarsest level. The same for any number of threads.
+BatchResult find_batch(const CombinedScans& combined, const VoxelMap& map, const CoarseMap& coarse_map,
+                       const CoarseOptions& coarse = {}, const VerdictOptions& verdict = {});
+
+}  // namespace vdbmap::registration

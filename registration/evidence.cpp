@@ -1,0 +1,138 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "registration/evidence.h"
+
+#include <algorithm>
+#include <cmath>
+#include <cstdint>
+
+#include <openvdb/math/DDA.h>
+#include <openvdb/math/Ray.h>
+
+#include "registration/fine/plane_match.h"
+#include "registration/fine/plane_residual.h"
+#include "vdbmap/core/parallel.h"
+
+namespace vdbmap::registration {
+namespace {
+
+constexpr double kInlierDistance = 0.15;   // [m] of a point from its plane
+constexpr double kPreciseDistance = 0.05;  // [m] the same of a point that leaves no doubt
+
+Eigen::Isometry3d local_pose(const Eigen::Isometry3d& map_from_source, const VoxelMap& map) {
+  Eigen::Isometry3d local = map_from_source;
+  local.translation() -= map.frame.anchor;
+  return local;
+}
+
+std::vector<Eigen::Vector3d> overlapping_points(std::span<const Eigen::Vector3d> points, const VoxelLevel& level,
+                                                const Eigen::Isometry3d& local_from_source) {
+  constexpr std::size_t kGrain = 256;
+  const double per_metre = voxels_per_metre(level.voxel_size());
+  std::vector<std::uint8_t> overlaps(points.size());
+  parallel_ranges(points.size(), kGrain, [&](std::size_t begin, std::size_t end) {
+    const VoxelFinder finder(level);
+    for (std::size_t i = begin; i < end; ++i) {
+      const Eigen::Vector3d point = local_from_source * points[i];
+      if (!is_addressable(point, per_metre)) continue;
+      finder.for_each_around(voxel_of_point(point, per_metre), 1,
+                             [&](const VoxelIndex&, const VoxelRecord&) { overlaps[i] = 1; });
+    }
+  });
+  std::vector<Eigen::Vector3d> overlapping;
+  for (std::size_t i = 0; i < points.size(); ++i) {
+    if (overlaps[i]) overlapping.push_back(points[i]);
+  }
+  return overlapping;
+}
+
+std::size_t count_within(std::span<const double> distances, double limit) {
+  return static_cast<std::size_t>(
+      std::count_if(distances.begin(), distances.end(), [&](double distance) { return std::abs(distance) < limit; }));
+}
+
+// The share of matches within the limit, each weighted by its leverage on the translation, n^T (sum n n^T)^-1 n: so
+// three directions of planes count alike, however many points each has.
+double balanced_share_within(std::span<const PlaneMatch> matches, std::span<const double> distances, double limit) {
+  constexpr double kRegularization = 1e-3;  // of the mean: a direction without planes must not decide
+  Eigen::Matrix3d sum = Eigen::Matrix3d::Zero();
+  for (const PlaneMatch& match : matches) sum += match.normal * match.normal.transpose();
+  const double regularization = kRegularization * static_cast<double>(matches.size()) + 1e-12;
+  const Eigen::Matrix3d inverse = (sum + regularization * Eigen::Matrix3d::Identity()).inverse();
+  double total = 0;
+  double within = 0;
+  for (std::size_t i = 0; i < matches.size(); ++i) {
+    const double leverage = matches[i].normal.dot(inverse * matches[i].normal);
+    total += leverage;
+    if (std::abs(distances[i]) < limit) within += leverage;
+  }
+  return total > 0 ? within / total : 0;
+}
+
+// A flat piece of surface that the ray meets at more than a grazing angle.
+bool is_wall(const VoxelRecord& record, const Eigen::Vector3d& direction) {
+  constexpr double kMinPlanarity = 0.5;
+  constexpr double kMinCosine = 0.35;  // between ray and normal: rays along the ground touch its voxels
+  return planarity_of(record) >= kMinPlanarity && std::abs(normal_of(record).dot(direction)) >= kMinCosine;
+}
+
+// Whether the ray runs through a wall well before its end.
+bool is_blocked(const VoxelFinder& finder, const VoxelLevel& level, const Ray& ray) {
+  constexpr double kMinDistance = 2.0;  // [m] from the sensor: its own vehicle
+  constexpr double kMargin = 1.0;       // [m] before the end: what was measured, and what lies close to it
+  const Eigen::Vector3d whole = ray.end - ray.origin;
+  const double length = whole.norm() - kMargin;
+  if (!(length > kMinDistance)) return false;
+  const Eigen::Vector3d direction = whole.normalized();
+  const double per_metre = voxels_per_metre(level.voxel_size());
+  const Eigen::Vector3d origin = ray.origin * per_metre;
+
+  using VoxelRay = openvdb::math::Ray<double>;
+  const VoxelRay in_voxels({origin.x(), origin.y(), origin.z()}, {direction.x(), direction.y(), direction.z()},
+                           kMinDistance * per_metre, length * per_metre);
+  openvdb::math::DDA<VoxelRay, 0> walk(in_voxels);
+  do {
+    const VoxelRecord* record = finder.find(walk.voxel());
+    if (record && is_wall(*record, direction)) return true;
+  } while (walk.step());
+  return false;
+}
+
+std::size_t count_blocked(std::span<const Ray> rays, const VoxelLevel& level,
+                          const Eigen::Isometry3d& local_from_source) {
+  constexpr std::size_t kGrain = 32;
+  const double per_metre = voxels_per_metre(level.voxel_size());
+  std::vector<std::uint8_t> blocked(rays.size());
+  parallel_ranges(rays.size(), kGrain, [&](std::size_t begin, std::size_t end) {
+    const VoxelFinder finder(level);
+    for (std::size_t i = begin; i < end; ++i) {
+      const Ray ray{local_from_source * rays[i].origin, local_from_source * rays[i].end};
+      if (!is_addressable(ray.origin, per_metre) || !is_addressable(ray.end, per_metre)) continue;
+      blocked[i] = is_blocked(finder, level, ray);
+    }
+  });
+  return static_cast<std::size_t>(std::count(blocked.begin(), blocked.end(), 1));
+}
+
+double share(std::size_t part, std::size_t whole) {
+  return whole > 0 ? static_cast<double>(part) / static_cast<double>(whole) : 0;
+}
+
+}  // namespace
+
+Evidence weigh(std::span<const Eigen::Vector3d> points, std::span<const Ray> rays, const VoxelMap& map,
+               const Eigen::Isometry3d& map_from_source) {
+  const Eigen::Isometry3d local_from_source = local_pose(map_from_source, map);
+  const std::vector<Eigen::Vector3d> overlapping = overlapping_points(points, map.coarsest(), local_from_source);
+  Evidence evidence;
+  evidence.num_points = points.size();
+  evidence.overlap = share(overlapping.size(), points.size());
+  const std::vector<PlaneMatch> matches = match_planes(overlapping, map.finest(), local_from_source, {});
+  const std::vector<double> distances = plane_distances(matches, local_from_source);
+  evidence.inlier_share = share(count_within(distances, kInlierDistance), overlapping.size());
+  evidence.precision = balanced_share_within(matches, distances, kPreciseDistance);
+  evidence.num_rays = rays.size();
+  evidence.blocked_share = share(count_blocked(rays, map.finest(), local_from_source), rays.size());
+  return evidence;
+}
+
+}  // namespace vdbmap::registration

@@ -1,0 +1,39 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#pragma once
+
+#include <cstddef>
+#include <span>
+#include <vector>
+
+#include <Eigen/Geometry>
+
+#include "vdbmap/core/voxel_map.h"
+
+namespace vdbmap::registration {
+
+/// A laser ray from the sensor to the point that it measured [m].
+struct Ray {
+  Eigen::Vector3d origin = Eigen::Vector3d::Zero();
+  Eigen::Vector3d end = Eigen::Vector3d::Zero();
+};
+
+/// What speaks for and against points lying in a map as a pose says.
+struct Evidence {
+  std::size_t num_points = 0;
+  double overlap = 0;       ///< share of the points that have the map within a voxel of the coarsest level
+  double inlier_share = 0;  ///< of the overlapping points: within 0.15 m of a plane of the finest level
+  double precision = 0;     ///< share of the matched points within 5 cm of their plane, every direction of space
+                            ///< counted alike: ground fits anywhere, what stands on it does not
+  std::size_t num_rays = 0;
+  double blocked_share = 0;  ///< of the rays: would have had to pass through a solid surface of the map
+
+  /// Share of all points that the map explains: one figure to compare poses by.
+  double explained_share() const { return overlap * inlier_share; }
+};
+
+/// Weighs a pose. Points, and rays that end in them, are in the frame of the source; `map_from_source` leads to the
+/// original system. The same for any number of threads.
+Evidence weigh(std::span<const Eigen::Vector3d> points, std::span<const Ray> rays, const VoxelMap& map,
+               const Eigen::Isometry3d& map_from_source);
+
+}  // namespace vdbmap::registration
