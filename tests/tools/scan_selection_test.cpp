@@ -38,10 +38,10 @@ TEST(ScanSelection, CountsFromTheOffsetInSteps) {
   EXPECT_EQ((ScanSelection{2, 0}.indices(0)), Indices{});
 }
 
-TEST(ScanSelection, FilesAndPosesOfOneScanStayTogether) {
+TEST(ScanSelection, ScansAndTheirPosesStayTogether) {
   const ScanSelection selection{2, 1};
-  EXPECT_EQ(select({"0.bin", "1.bin", "2.bin", "3.bin"}, selection),
-            (std::vector<std::filesystem::path>{"1.bin", "3.bin"}));
+  const std::vector<ScanPlace> scans = {{"0.bin", {}}, {"1.pcap", 0}, {"1.pcap", 1}, {"1.pcap", 2}};
+  EXPECT_EQ(select(scans, selection), (std::vector<ScanPlace>{{"1.pcap", 0}, {"1.pcap", 2}}));
   Trajectory poses = poses_along_x(4);
   poses.times = {10, 11, 12, 13};
   const Trajectory chosen = select(poses, selection);

@@ -4,6 +4,7 @@
 #include <filesystem>
 #include <limits>
 #include <optional>
+#include <set>
 #include <stdexcept>
 #include <string>
 #include <vector>
@@ -107,11 +108,11 @@ BuildOptions build_options(const BuildCommandOptions& options) {
 
 MapFromFiles build(const std::vector<MapInput>& inputs, const BuildOptions& build_options,
                    const CommonOptions& common) {
-  Progress progress("building from files", inputs.size(), common);
+  Progress progress("building from scans", inputs.size(), common);
   MapFromFilesOptions options;
   options.build = build_options;
   options.reads_ahead = common.num_threads != 1;
-  options.on_file_done = [&progress] { progress.advance(); };
+  options.on_scan_done = [&progress] { progress.advance(); };
   return build_map_from_files(inputs, options);
 }
 
@@ -125,20 +126,34 @@ void warn(const MapFromFiles& built) {
   }
 }
 
-void print(const MapFromFiles& built, const std::filesystem::path& file, std::size_t num_files, double seconds,
-           bool as_json) {
+std::size_t count_files(const std::vector<MapInput>& inputs) {
+  std::set<std::filesystem::path> files;
+  for (const MapInput& input : inputs) files.insert(input.scan.file);
+  return files.size();
+}
+
+// "64 files", "1 file", "5 scans of 1 file".
+std::string text_of_counts(std::size_t num_scans, std::size_t num_files) {
+  const std::string files = fmt::format("{} {}", num_files, num_files == 1 ? "file" : "files");
+  return num_scans == num_files ? files : fmt::format("{} scans of {}", num_scans, files);
+}
+
+void print(const MapFromFiles& built, const std::filesystem::path& file, const std::vector<MapInput>& inputs,
+           double seconds, bool as_json) {
+  const std::size_t num_files = count_files(inputs);
   if (as_json) {
     nlohmann::ordered_json json = json_of_map(built.map, file);
     json["files"] = num_files;
+    json["scans"] = inputs.size();
     json["dropped_points"] = built.num_dropped;
     json["seconds"] = seconds;
     return print_json(json);
   }
-  print_result(fmt::format("{}: built from {} {} in {:.1f} s\n", file.string(), num_files,
-                           num_files == 1 ? "file" : "files", seconds) +
-               (built.num_dropped > 0 ? fmt::format("dropped    {} points that are not finite\n", built.num_dropped)
-                                      : std::string()) +
-               text_of_map(built.map, file));
+  print_result(
+      fmt::format("{}: built from {} in {:.1f} s\n", file.string(), text_of_counts(inputs.size(), num_files), seconds) +
+      (built.num_dropped > 0 ? fmt::format("dropped    {} points that are not finite\n", built.num_dropped)
+                             : std::string()) +
+      text_of_map(built.map, file));
 }
 
 ExitCode run(const BuildCommandOptions& options, const CommonOptions& common) {
@@ -148,13 +163,13 @@ ExitCode run(const BuildCommandOptions& options, const CommonOptions& common) {
   std::vector<std::filesystem::path> read_files = files;
   if (options.poses) read_files.push_back(*options.poses);
   check_output(options.output.file, read_files);
-  const std::vector<MapInput> inputs = choose_inputs(files, options.selection, options.poses);
+  const std::vector<MapInput> inputs = choose_inputs(list_scans(files), options.selection, options.poses);
 
   const MapFromFiles built = build(inputs, checked_options, common);
   warn(built);
   save_map(options.output.file, built.map, options.output.save);
   const std::chrono::duration<double> elapsed = std::chrono::steady_clock::now() - start;
-  print(built, options.output.file, inputs.size(), elapsed.count(), common.json);
+  print(built, options.output.file, inputs, elapsed.count(), common.json);
   return ExitCode::kDone;
 }
 

@@ -22,8 +22,8 @@ Trajectory read_poses(const std::filesystem::path& path, std::size_t num_scans) 
   return poses;
 }
 
-std::vector<MapInput> with_poses(const std::vector<std::filesystem::path>& scans,
-                                 const std::vector<std::size_t>& chosen, const std::filesystem::path& path) {
+std::vector<MapInput> with_poses(const std::vector<ScanPlace>& scans, const std::vector<std::size_t>& chosen,
+                                 const std::filesystem::path& path) {
   const Trajectory poses = read_poses(path, scans.size());
   std::vector<MapInput> inputs;
   for (const std::size_t i : chosen) {
@@ -38,15 +38,15 @@ std::vector<MapInput> with_poses(const std::vector<std::filesystem::path>& scans
 
 }  // namespace
 
-std::vector<MapInput> choose_inputs(const std::vector<std::filesystem::path>& files, const ScanSelection& selection,
+std::vector<MapInput> choose_inputs(const std::vector<ScanPlace>& scans, const ScanSelection& selection,
                                     const std::optional<std::filesystem::path>& poses) {
-  const std::vector<std::size_t> chosen = selection.indices(files.size());
+  const std::vector<std::size_t> chosen = selection.indices(scans.size());
   if (chosen.empty()) {
-    throw std::invalid_argument(fmt::format("{} chooses none of {} files", selection.text(), files.size()));
+    throw std::invalid_argument(fmt::format("{} chooses none of {} scans", selection.text(), scans.size()));
   }
-  if (poses) return with_poses(files, chosen, *poses);
+  if (poses) return with_poses(scans, chosen, *poses);
   std::vector<MapInput> inputs;
-  for (const std::size_t i : chosen) inputs.push_back({files[i], std::nullopt});
+  for (const std::size_t i : chosen) inputs.push_back({scans[i], std::nullopt});
   return inputs;
 }
 

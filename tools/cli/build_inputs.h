@@ -10,10 +10,10 @@
 
 namespace vdbmap::cli {
 
-/// The chosen files; with `poses`, each with the pose of its place in the sequence, and without those that have none,
-/// which is logged. Throws std::invalid_argument where no file is chosen, and IoError naming both counts where there
-/// are fewer poses than files, or where no chosen file has one.
-std::vector<MapInput> choose_inputs(const std::vector<std::filesystem::path>& files, const ScanSelection& selection,
+/// The chosen scans; with `poses`, each with the pose of its place in the sequence, and without those that have none,
+/// which is logged. Throws std::invalid_argument where no scan is chosen, and IoError naming both counts where there
+/// are fewer poses than scans, or where no chosen scan has one.
+std::vector<MapInput> choose_inputs(const std::vector<ScanPlace>& scans, const ScanSelection& selection,
                                     const std::optional<std::filesystem::path>& poses);
 
 }  // namespace vdbmap::cli

@@ -16,7 +16,7 @@
 #include "tools/cli/scan_selection.h"
 #include "vdbmap/core/error.h"
 #include "vdbmap/io/map_file.h"
-#include "vdbmap/io/point_reader.h"
+#include "vdbmap/io/scan_sequence.h"
 #include "vdbmap/io/trajectory_file.h"
 
 namespace vdbmap::cli {
@@ -38,13 +38,14 @@ struct LocalizeCommandOptions {
 
 // What became of one scan.
 struct ScanReport {
-  std::filesystem::path file;
+  ScanPlace scan;
   LocalizedScan localized;
 };
 
 void add_options(CLI::App& app, LocalizeCommandOptions& options) {
   app.add_option("MAP", options.map, "The map (.vdb)")->type_name("FILE")->required();
-  app.add_option("SCANS", options.scans, "Scans in the frame of the sensor, and folders of them")
+  app.add_option("SCANS", options.scans,
+                 "Scans in the frame of the sensor, and folders of them; of a Velodyne capture each turn is one")
       ->type_name("PATH...")
       ->required();
   app.add_option("--initial", options.initial,
@@ -70,30 +71,33 @@ Trajectory read_guesses(const LocalizeCommandOptions& options, std::size_t num_s
   return read_selected_poses(options.initial, options.selection, num_scans);
 }
 
-LocalizedScan localize(const std::filesystem::path& file, const VoxelMap& map, const Eigen::Isometry3d& guess,
+LocalizedScan localize(const PointCloud& scan, const VoxelMap& map, const Eigen::Isometry3d& guess,
                        const LocalizeCommandOptions& options) {
-  return registration::localize_scan(read_points(file).cloud, map, guess, options.fine, options.found);
+  return registration::localize_scan(scan, map, guess, options.fine, options.found);
 }
 
-std::vector<ScanReport> localize_each(const std::vector<std::filesystem::path>& files, const VoxelMap& map,
+std::vector<ScanReport> localize_each(const std::vector<ScanPlace>& scans, const VoxelMap& map,
                                       const Trajectory& guesses, const LocalizeCommandOptions& options,
                                       Progress& progress) {
   std::vector<ScanReport> reports;
-  for (std::size_t i = 0; i < files.size(); ++i) {
+  ScanReader reader;
+  for (std::size_t i = 0; i < scans.size(); ++i) {
     const auto& guess = guesses.map_from_scan[i];
-    reports.push_back({files[i], guess ? localize(files[i], map, *guess, options) : LocalizedScan{{}, "no guess"}});
+    reports.push_back({scans[i], guess ? localize(reader.read(scans[i]).cloud, map, *guess, options)
+                                       : LocalizedScan{{}, "no guess"}});
     progress.advance();
   }
   return reports;
 }
 
-std::vector<ScanReport> follow_motion(const std::vector<std::filesystem::path>& files, const VoxelMap& map,
+std::vector<ScanReport> follow_motion(const std::vector<ScanPlace>& scans, const VoxelMap& map,
                                       const Eigen::Isometry3d& first_guess, const LocalizeCommandOptions& options,
                                       Progress& progress) {
   std::vector<ScanReport> reports;
+  ScanReader reader;
   ConstantVelocity motion(first_guess);
-  for (const std::filesystem::path& file : files) {
-    reports.push_back({file, localize(file, map, motion.guess(), options)});
+  for (const ScanPlace& scan : scans) {
+    reports.push_back({scan, localize(reader.read(scan).cloud, map, motion.guess(), options)});
     const LocalizedScan& localized = reports.back().localized;
     if (localized.found()) {
       motion.found(localized.fine.map_from_scan);
@@ -105,13 +109,13 @@ std::vector<ScanReport> follow_motion(const std::vector<std::filesystem::path>& 
   return reports;
 }
 
-std::vector<ScanReport> localize_all(const std::vector<std::filesystem::path>& files, const VoxelMap& map,
+std::vector<ScanReport> localize_all(const std::vector<ScanPlace>& scans, const VoxelMap& map,
                                      const Trajectory& guesses, const LocalizeCommandOptions& options,
                                      const CommonOptions& common) {
-  Progress progress("localizing scans", files.size(), common);
-  if (guesses.size() != 1) return localize_each(files, map, guesses, options, progress);
+  Progress progress("localizing scans", scans.size(), common);
+  if (guesses.size() != 1) return localize_each(scans, map, guesses, options, progress);
   if (!guesses.map_from_scan.front()) throw IoError::malformed(options.initial, "its only guess is missing");
-  return follow_motion(files, map, *guesses.map_from_scan.front(), options, progress);
+  return follow_motion(scans, map, *guesses.map_from_scan.front(), options, progress);
 }
 
 Trajectory trajectory_of(const std::vector<ScanReport>& reports, const Trajectory& guesses) {
@@ -143,7 +147,9 @@ nlohmann::ordered_json json_of_matrix(const Matrix& matrix) {
 
 nlohmann::ordered_json json_of(const ScanReport& report) {
   const registration::FineResult& fine = report.localized.fine;
-  nlohmann::ordered_json json = {{"file", report.file.string()}, {"found", report.localized.found()}};
+  nlohmann::ordered_json json = {{"file", report.scan.file.string()}};
+  if (report.scan.turn) json["turn"] = *report.scan.turn + 1;
+  json["found"] = report.localized.found();
   if (!report.localized.found()) json["reason"] = report.localized.reason;
   json["map_from_scan"] = json_of_matrix(fine.map_from_scan.matrix().topRows<3>().eval());
   json["covariance"] = json_of_matrix(fine.covariance);
@@ -157,9 +163,9 @@ nlohmann::ordered_json json_of(const ScanReport& report) {
 
 void warn(const std::vector<ScanReport>& reports) {
   for (const ScanReport& report : reports) {
-    if (!report.localized.found()) spdlog::warn("{}: not found: {}", report.file.string(), report.localized.reason);
+    if (!report.localized.found()) spdlog::warn("{}: not found: {}", report.scan.name(), report.localized.reason);
     for (const auto& direction : report.localized.fine.unobservable) {
-      spdlog::warn("{}: the map does not determine {}", report.file.string(), direction.description);
+      spdlog::warn("{}: the map does not determine {}", report.scan.name(), direction.description);
     }
   }
 }
@@ -176,14 +182,14 @@ void print(const std::vector<ScanReport>& reports, const LocalizeCommandOptions&
 }
 
 ExitCode run(const LocalizeCommandOptions& options, const CommonOptions& common) {
-  const std::vector<std::filesystem::path> all_files = list_point_files(options.scans);
-  check_output(options.output, all_files);
+  const std::vector<std::filesystem::path> files = list_point_files(options.scans);
+  check_output(options.output, files);
   check_output(options.output, {options.map, options.initial});
-  const std::vector<std::filesystem::path> files = select(all_files, options.selection);
-  const Trajectory guesses = read_guesses(options, files.size());
+  const std::vector<ScanPlace> scans = select(list_scans(files), options.selection);
+  const Trajectory guesses = read_guesses(options, scans.size());
   const VoxelMap map = load_map(options.map);
 
-  const std::vector<ScanReport> reports = localize_all(files, map, guesses, options, common);
+  const std::vector<ScanReport> reports = localize_all(scans, map, guesses, options, common);
   warn(reports);
   const auto format = options.format == "tum" ? TrajectoryFormat::kTum : TrajectoryFormat::kKitti;
   write_trajectory(options.output, trajectory_of(reports, guesses), format);

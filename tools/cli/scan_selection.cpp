@@ -33,9 +33,8 @@ void add_scan_selection(CLI::App& app, ScanSelection& selection) {
       ->capture_default_str();
 }
 
-std::vector<std::filesystem::path> select(const std::vector<std::filesystem::path>& scans,
-                                          const ScanSelection& selection) {
-  std::vector<std::filesystem::path> chosen;
+std::vector<ScanPlace> select(const std::vector<ScanPlace>& scans, const ScanSelection& selection) {
+  std::vector<ScanPlace> chosen;
   for (const std::size_t i : selection.indices(scans.size())) chosen.push_back(scans[i]);
   return chosen;
 }

@@ -8,6 +8,7 @@
 
 #include <CLI/App.hpp>
 
+#include "vdbmap/io/scan_sequence.h"
 #include "vdbmap/io/trajectory_file.h"
 
 namespace vdbmap::cli {
@@ -27,9 +28,8 @@ struct ScanSelection {
 /// Declares --every and --offset.
 void add_scan_selection(CLI::App& app, ScanSelection& selection);
 
-/// The chosen files of a sequence.
-std::vector<std::filesystem::path> select(const std::vector<std::filesystem::path>& scans,
-                                          const ScanSelection& selection);
+/// The chosen scans of a sequence.
+std::vector<ScanPlace> select(const std::vector<ScanPlace>& scans, const ScanSelection& selection);
 
 /// The chosen poses, with their times.
 Trajectory select(const Trajectory& poses, const ScanSelection& selection);

@@ -10,19 +10,20 @@
 #include <Eigen/Geometry>
 
 #include "vdbmap/core/map_builder.h"
+#include "vdbmap/io/scan_sequence.h"
 
 namespace vdbmap {
 
-/// A point file and where its points lie.
+/// A scan and where its points lie.
 struct MapInput {
-  std::filesystem::path file;
+  ScanPlace scan;
   std::optional<Eigen::Isometry3d> map_from_scan;  ///< nothing: the points are in map coordinates
 };
 
 struct MapFromFilesOptions {
   BuildOptions build;                          ///< without `epsg`, that of the files in map coordinates is taken
-  bool reads_ahead = true;                     ///< a thread of its own reads the next file while one is folded
-  std::function<void()> on_file_done = [] {};  ///< called after each file
+  bool reads_ahead = true;                     ///< a thread of its own reads the next scan while one is folded
+  std::function<void()> on_scan_done = [] {};  ///< called after each scan
 };
 
 /// A file whose coordinates are not in metres.
@@ -40,7 +41,7 @@ struct MapFromFiles {
   std::vector<ForeignUnit> foreign_units;  ///< taken as they are, as if in metres
 };
 
-/// The map of all points in the files. At most two files' points are in memory at once. Throws IoError naming the file
+/// The map of all points in the scans. At most two scans are in memory at once. Throws IoError naming the scan
 /// that cannot be read, lies beyond the addressable range, or has another EPSG code than one before; and
 /// std::invalid_argument for no inputs or bad options.
 MapFromFiles build_map_from_files(const std::vector<MapInput>& inputs, const MapFromFilesOptions& options = {});

@@ -84,8 +84,8 @@ std::optional<UdpDatagram> udp_datagram(Bytes ip) {
   if (udp.size() < 8 || big_endian_16(udp, 4) < 8) return std::nullopt;
 
   UdpDatagram datagram;
-  datagram.source_address = big_endian_32(ip, 12);
-  datagram.destination_port = big_endian_16(udp, 2);
+  datagram.source.address = big_endian_32(ip, 12);
+  datagram.source.destination_port = big_endian_16(udp, 2);
   datagram.full_size = big_endian_16(udp, 4) - std::size_t{8};
   datagram.payload = udp.subspan(8, std::min(datagram.full_size, udp.size() - 8));
   return datagram;

@@ -12,10 +12,17 @@ struct pcap;
 
 namespace vdbmap {
 
+/// Who sends, and to which port.
+struct UdpSource {
+  std::uint32_t address = 0;
+  std::uint16_t destination_port = 0;
+
+  bool operator==(const UdpSource&) const = default;
+};
+
 /// One UDP datagram of a capture.
 struct UdpDatagram {
-  std::uint32_t source_address = 0;
-  std::uint16_t destination_port = 0;
+  UdpSource source;
   std::size_t full_size = 0;              ///< [bytes] of the payload when it was sent
   std::span<const std::uint8_t> payload;  ///< the part that was captured; valid until the next call of next()
 };

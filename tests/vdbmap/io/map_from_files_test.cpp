@@ -27,9 +27,11 @@ PointCloud line(std::size_t count, const Eigen::Vector3d& first) {
 
 class MapFromFilesTest : public testing::Test {
  protected:
+  MapInput whole_file(const std::string& name) const { return {{folder_ / name, std::nullopt}, std::nullopt}; }
+
   MapInput ply(const std::string& name, const PointCloud& cloud) const {
     write_ply(folder_ / name, cloud);
-    return {folder_ / name, std::nullopt};
+    return whole_file(name);
   }
 
   test::TemporaryFolder folder_;
@@ -54,7 +56,7 @@ TEST_F(MapFromFilesTest, ReadingAheadChangesNothing) {
                                         ply("c.ply", line(30, {1, 0, 0}))};
   MapFromFilesOptions options;
   int num_done = 0;
-  options.on_file_done = [&num_done] { ++num_done; };
+  options.on_scan_done = [&num_done] { ++num_done; };
   const MapFromFiles ahead = build_map_from_files(inputs, options);
   EXPECT_EQ(num_done, 3);
   options.reads_ahead = false;
@@ -74,7 +76,7 @@ TEST_F(MapFromFilesTest, APoseMovesTheScan) {
 TEST_F(MapFromFilesTest, TellsWhatTheFilesHeld) {
   write_raw(folder_ / "holes.xyz", "1 1 1\n2 nan 2\n");
   write_las(folder_ / "a.las", line(10, {0, 0, 0}), {.epsg = 25832});
-  const MapFromFiles built = build_map_from_files({{folder_ / "holes.xyz", {}}, {folder_ / "a.las", {}}});
+  const MapFromFiles built = build_map_from_files({whole_file("holes.xyz"), whole_file("a.las")});
   EXPECT_EQ(built.num_points, 11U);
   EXPECT_EQ(built.num_dropped, 1U);
   EXPECT_EQ(built.epsg_of_files, 25832);
@@ -86,14 +88,14 @@ TEST_F(MapFromFilesTest, AnEpsgCodeOfTheOptionsComesFirst) {
   write_las(folder_ / "a.las", line(10, {0, 0, 0}), {.epsg = 25832});
   MapFromFilesOptions options;
   options.build.epsg = 32632;
-  const MapFromFiles built = build_map_from_files({{folder_ / "a.las", {}}}, options);
+  const MapFromFiles built = build_map_from_files({whole_file("a.las")}, options);
   EXPECT_EQ(built.epsg_of_files, 25832);
   EXPECT_EQ(built.map.frame.epsg, 32632);
 }
 
 TEST_F(MapFromFilesTest, ScansWithAPoseSayNothingOfTheMapsSystem) {
   write_las(folder_ / "a.las", line(10, {0, 0, 0}), {.epsg = 25832});
-  const MapFromFiles built = build_map_from_files({{folder_ / "a.las", Eigen::Isometry3d::Identity()}});
+  const MapFromFiles built = build_map_from_files({{{folder_ / "a.las", {}}, Eigen::Isometry3d::Identity()}});
   EXPECT_EQ(built.map.frame.epsg, std::nullopt);
 }
 
@@ -102,7 +104,7 @@ TEST_F(MapFromFilesTest, ErrorsNameTheFile) {
   const MapInput far = ply("far.ply", line(1, {2e5, 0, 0}));
   EXPECT_EQ(io_error_of([&] { build_map_from_files({near, far}); }).substr(0, 9), "far.ply: ");
   EXPECT_EQ(io_error_of([&] {
-              build_map_from_files({near, {folder_ / "missing.ply", {}}});
+              build_map_from_files({near, whole_file("missing.ply")});
             }).substr(0, 13),
             "missing.ply: ");
   EXPECT_THROW(build_map_from_files({}), std::invalid_argument);

@@ -1,0 +1,58 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#pragma once
+
+#include <array>
+#include <cstddef>
+#include <cstdint>
+#include <deque>
+#include <filesystem>
+#include <optional>
+#include <vector>
+
+#include "vdbmap/core/point_cloud.h"
+#include "vdbmap/io/udp_capture.h"
+#include "vdbmap/io/velodyne_packet.h"
+
+namespace vdbmap {
+
+/// The turns of a Velodyne capture one after the other, as vlp16_pcap.h describes them; only the current one is in
+/// memory.
+class Vlp16TurnReader {
+ public:
+  /// Throws IoError where the file is no capture, or cannot be read up to the packets of the sensor.
+  explicit Vlp16TurnReader(const std::filesystem::path& path);
+
+  /// The next turn that has points, nothing at the end. Throws IoError for damage, a sensor that is not supported, and
+  /// at the end of a capture without points.
+  std::optional<PointCloud> next();
+
+ private:
+  // Continues microseconds after the hour over the hour's end.
+  class HourClock {
+   public:
+    double seconds(std::uint32_t microseconds_after_hour);
+
+   private:
+    std::int64_t latest_ = 0;         // [us]
+    std::int64_t start_of_hour_ = 0;  // [us]
+  };
+
+  bool read_packet();
+  std::array<std::uint64_t, kVelodyneBlocks> turns_of_blocks(VelodynePayload payload);
+  void decode(VelodynePayload payload);
+  void add(const VelodyneReturn& received, double packet_time, std::uint64_t turn);
+
+  std::filesystem::path path_;
+  UdpSource sensor_;
+  UdpCapture capture_;
+  HourClock clock_;
+  int latest_azimuth_ = 0;  // [0.01 deg]
+  std::uint64_t latest_turn_ = 0;
+  std::uint64_t current_turn_ = 0;       // that of the last point
+  std::vector<VelodyneReturn> returns_;  // of one packet
+  PointCloud current_;
+  std::deque<PointCloud> finished_;  // a packet may end more than one
+  bool has_points_ = false;
+};
+
+}  // namespace vdbmap
