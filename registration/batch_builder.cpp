@@ -45,8 +45,9 @@ CombinedScans BatchBuilder::combine() const {
     while (i >= ends_[scan]) ++scan;
     rays.push_back({sensors_[scan].translation(), sample_[i]});
   }
+  std::vector<SurfacePiece> pieces = flat_pieces(map.levels.front());
   return {std::move(map.levels.front()), sample_scan(sample_, kFineSpacing, kCoarseSpacing, kEverywhere),
-          std::move(rays)};
+          std::move(pieces), std::move(rays)};
 }
 
 }  // namespace vdbmap::registration

@@ -30,6 +30,7 @@ BatchCandidate align(const CombinedScans& combined, const VoxelMap& map, const P
   candidate.map_from_batch = fine.map_from_scan;
   candidate.num_feature_inliers = hypothesis.num_inliers;
   candidate.evidence = weigh(combined.sample.fine, combined.rays, map, fine.map_from_scan);
+  candidate.agreement = surface_agreement(combined.pieces, map, fine.map_from_scan);
   candidate.covariance = fine.covariance;
   return candidate;
 }
@@ -38,9 +39,8 @@ std::vector<BatchCandidate> align_all(const CombinedScans& combined, const Voxel
                                       std::span<const PoseHypothesis> hypotheses) {
   std::vector<BatchCandidate> candidates(std::min(hypotheses.size(), kMaxAligned));
   parallel_for(candidates.size(), [&](std::size_t i) { candidates[i] = align(combined, map, hypotheses[i]); });
-  std::stable_sort(candidates.begin(), candidates.end(), [](const BatchCandidate& a, const BatchCandidate& b) {
-    return a.evidence.explained_share() > b.evidence.explained_share();
-  });
+  std::stable_sort(candidates.begin(), candidates.end(),
+                   [](const BatchCandidate& a, const BatchCandidate& b) { return a.agreement > b.agreement; });
   return candidates;
 }
 
@@ -76,21 +76,17 @@ std::string reason_not_found(std::span<const BatchCandidate> candidates, const V
   if (best.evidence.overlap < verdict.min_overlap) {
     return "only " + percent(best.evidence.overlap) + " of the points have the map near by";
   }
-  if (best.evidence.inlier_share < verdict.min_inlier_share) {
-    return "only " + percent(best.evidence.inlier_share) + " of the points lie on the map's surfaces";
-  }
-  if (best.evidence.precision < verdict.min_precision) {
-    return "only " + percent(best.evidence.precision) + " of its surfaces fit those of the map to 5 cm";
+  if (best.agreement < verdict.min_agreement) {
+    return "only " + percent(best.agreement) + " of its surfaces agree with the map's";
   }
   if (best.evidence.blocked_share > verdict.max_blocked_share) {
     return percent(best.evidence.blocked_share) + " of the rays would pass through solid map";
   }
   if (greatest_deviation(best.covariance) > verdict.max_deviation) return "the map does not determine its place";
   if (candidates.size() < 2) return "";
-  const double margin = best.evidence.explained_share() / std::max(candidates[1].evidence.explained_share(), 1e-6);
-  if (margin >= verdict.min_margin) return "";
-  return "another pose explains nearly as many points: " + percent(candidates[1].evidence.explained_share()) +
-         " beside " + percent(best.evidence.explained_share());
+  const double next = candidates[1].agreement;
+  if (best.agreement >= verdict.min_margin * next) return "";
+  return "another pose agrees nearly as well: " + percent(next) + " of its surfaces beside " + percent(best.agreement);
 }
 
 }  // namespace
@@ -103,8 +99,7 @@ void VerdictOptions::check() const {
     throw std::invalid_argument(message.str());
   };
   require(min_overlap >= 0 && min_overlap <= 1, "min_overlap", min_overlap, "0 to 1");
-  require(min_inlier_share >= 0 && min_inlier_share <= 1, "min_inlier_share", min_inlier_share, "0 to 1");
-  require(min_precision >= 0 && min_precision <= 1, "min_precision", min_precision, "0 to 1");
+  require(min_agreement >= 0 && min_agreement <= 1, "min_agreement", min_agreement, "0 to 1");
   require(max_blocked_share >= 0 && max_blocked_share <= 1, "max_blocked_share", max_blocked_share, "0 to 1");
   require(max_deviation > 0, "max_deviation", max_deviation, "more than 0 m");
   require(min_margin >= 1, "min_margin", min_margin, "1 or more");

@@ -16,10 +16,9 @@ namespace vdbmap::registration {
 /// When a pose found without a guess is believed.
 struct VerdictOptions {
   double min_overlap = 0.3;        ///< share of the points that have the map near by
-  double min_inlier_share = 0.25;  ///< of the overlapping points: on a plane of the map
-  double min_precision = 0.72;     ///< Evidence::precision; on KITTI streets true poses reach 0.80, others stay at 0.63
+  double min_agreement = 0.5;      ///< surface_agreement(); on KITTI streets true poses reach 0.60, others 0.45
   double max_blocked_share = 0.6;  ///< of the rays: through solid map; what has moved since blocks some
-  double min_margin = 1.2;         ///< points explained, by those of the next best pose
+  double min_margin = 1.2;         ///< agreement of the best pose by that of the next best
   double max_deviation = 0.25;     ///< [m] standard deviation of the place in its least certain direction
   std::size_t min_points = 200;    ///< sampled points of a batch, 1.5 m apart
 
@@ -31,6 +30,7 @@ struct VerdictOptions {
 struct CombinedScans {
   VoxelLevel level;    ///< voxels as large as the map's coarsest
   SampledScan sample;  ///< all scans together
+  std::vector<SurfacePiece> pieces;
   std::vector<Ray> rays;
 };
 
@@ -38,6 +38,7 @@ struct CombinedScans {
 struct BatchCandidate {
   Eigen::Isometry3d map_from_batch = Eigen::Isometry3d::Identity();  ///< original system
   std::size_t num_feature_inliers = 0;                               ///< of the coarse search
+  double agreement = 0;                                              ///< surface_agreement()
   Evidence evidence;
   Matrix6d covariance = Matrix6d::Zero();  ///< as FineResult::covariance
 };

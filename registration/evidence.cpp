@@ -10,13 +10,15 @@
 
 #include "registration/fine/plane_match.h"
 #include "registration/fine/plane_residual.h"
+#include "vdbmap/core/eigen_features.h"
 #include "vdbmap/core/parallel.h"
 
 namespace vdbmap::registration {
 namespace {
 
-constexpr double kInlierDistance = 0.15;   // [m] of a point from its plane
-constexpr double kPreciseDistance = 0.05;  // [m] the same of a point that leaves no doubt
+constexpr double kInlierDistance = 0.15;  // [m] of a point from its plane
+
+constexpr double kFlat = 0.5;  // planarity from which on a voxel counts as a piece of surface
 
 Eigen::Isometry3d local_pose(const Eigen::Isometry3d& map_from_source, const VoxelMap& map) {
   Eigen::Isometry3d local = map_from_source;
@@ -50,22 +52,60 @@ std::size_t count_within(std::span<const double> distances, double limit) {
       std::count_if(distances.begin(), distances.end(), [&](double distance) { return std::abs(distance) < limit; }));
 }
 
-// The share of matches within the limit, each weighted by its leverage on the translation, n^T (sum n n^T)^-1 n: so
-// three directions of planes count alike, however many points each has.
-double balanced_share_within(std::span<const PlaneMatch> matches, std::span<const double> distances, double limit) {
-  constexpr double kRegularization = 1e-3;  // of the mean: a direction without planes must not decide
+// The share of what holds, each weighted by the leverage of its normal on the translation, n^T (sum n n^T)^-1 n: so
+// three directions of surfaces count alike, however many there are of each.
+double balanced_share(std::span<const Eigen::Vector3d> normals, const std::vector<bool>& holds) {
+  constexpr double kRegularization = 1e-3;  // of the mean: a direction without surfaces must not decide
   Eigen::Matrix3d sum = Eigen::Matrix3d::Zero();
-  for (const PlaneMatch& match : matches) sum += match.normal * match.normal.transpose();
-  const double regularization = kRegularization * static_cast<double>(matches.size()) + 1e-12;
+  for (const Eigen::Vector3d& normal : normals) sum += normal * normal.transpose();
+  const double regularization = kRegularization * static_cast<double>(normals.size()) + 1e-12;
   const Eigen::Matrix3d inverse = (sum + regularization * Eigen::Matrix3d::Identity()).inverse();
   double total = 0;
-  double within = 0;
-  for (std::size_t i = 0; i < matches.size(); ++i) {
-    const double leverage = matches[i].normal.dot(inverse * matches[i].normal);
+  double holding = 0;
+  for (std::size_t i = 0; i < normals.size(); ++i) {
+    const double leverage = normals[i].dot(inverse * normals[i]);
     total += leverage;
-    if (std::abs(distances[i]) < limit) within += leverage;
+    if (holds[i]) holding += leverage;
   }
-  return total > 0 ? within / total : 0;
+  return total > 0 ? holding / total : 0;
+}
+
+enum class PieceFit : std::uint8_t { kOutside, kDiffers, kAgrees };
+
+// How the piece lies to the voxels around it.
+PieceFit fit_piece(const VoxelFinder& finder, const VoxelLevel& level, const SurfacePiece& piece) {
+  constexpr double kMaxDistance = 0.2;  // [m] from the plane
+  constexpr double kMinCosine = 0.94;   // between the normals: 20 degrees
+  const double per_metre = voxels_per_metre(level.voxel_size());
+  PieceFit fit = PieceFit::kOutside;
+  if (!is_addressable(piece.position, per_metre)) return fit;
+  finder.for_each_around(voxel_of_point(piece.position, per_metre), 1,
+                         [&](const VoxelIndex& voxel, const VoxelRecord& record) {
+                           if (fit == PieceFit::kOutside) fit = PieceFit::kDiffers;
+                           if (fit == PieceFit::kAgrees) return;
+                           const PlaneFit plane = fit_plane(covariance_of(record));
+                           const Eigen::Vector3d shift = piece.position - mean_of(record, voxel, level.voxel_size());
+                           if (plane.planarity >= kFlat && shift.norm() < level.voxel_size() &&
+                               std::abs(plane.normal.dot(piece.normal)) >= kMinCosine &&
+                               std::abs(plane.normal.dot(shift)) <= kMaxDistance) {
+                             fit = PieceFit::kAgrees;
+                           }
+                         });
+  return fit;
+}
+
+std::vector<PieceFit> fit_pieces(std::span<const SurfacePiece> pieces, const VoxelLevel& level,
+                                 const Eigen::Isometry3d& local_from_source) {
+  constexpr std::size_t kGrain = 128;
+  std::vector<PieceFit> fits(pieces.size());
+  parallel_ranges(pieces.size(), kGrain, [&](std::size_t begin, std::size_t end) {
+    const VoxelFinder finder(level);
+    for (std::size_t i = begin; i < end; ++i) {
+      fits[i] = fit_piece(finder, level,
+                          {local_from_source * pieces[i].position, local_from_source.linear() * pieces[i].normal});
+    }
+  });
+  return fits;
 }
 
 // A flat piece of surface that the ray meets at more than a grazing angle.
@@ -119,6 +159,32 @@ double share(std::size_t part, std::size_t whole) {
 
 }  // namespace
 
+std::vector<SurfacePiece> flat_pieces(const VoxelLevel& level) {
+  constexpr std::uint32_t kMinPoints = 5;
+  std::vector<SurfacePiece> pieces;
+  for_each_voxel(level, [&](const VoxelIndex& voxel, std::size_t number) {
+    const VoxelRecord& record = level.records()[number];
+    const PlaneFit plane = fit_plane(covariance_of(record));
+    if (record.count < kMinPoints || plane.planarity < kFlat) return;
+    pieces.push_back({mean_of(record, voxel, level.voxel_size()), plane.normal});
+  });
+  return pieces;
+}
+
+double surface_agreement(std::span<const SurfacePiece> pieces, const VoxelMap& map,
+                         const Eigen::Isometry3d& map_from_source) {
+  const Eigen::Isometry3d local_from_source = local_pose(map_from_source, map);
+  const std::vector<PieceFit> fits = fit_pieces(pieces, map.coarsest(), local_from_source);
+  std::vector<Eigen::Vector3d> normals;
+  std::vector<bool> agrees;
+  for (std::size_t i = 0; i < pieces.size(); ++i) {
+    if (fits[i] == PieceFit::kOutside) continue;
+    normals.push_back(pieces[i].normal);
+    agrees.push_back(fits[i] == PieceFit::kAgrees);
+  }
+  return balanced_share(normals, agrees);
+}
+
 Evidence weigh(std::span<const Eigen::Vector3d> points, std::span<const Ray> rays, const VoxelMap& map,
                const Eigen::Isometry3d& map_from_source) {
   const Eigen::Isometry3d local_from_source = local_pose(map_from_source, map);
@@ -129,7 +195,6 @@ Evidence weigh(std::span<const Eigen::Vector3d> points, std::span<const Ray> ray
   const std::vector<PlaneMatch> matches = match_planes(overlapping, map.finest(), local_from_source, {});
   const std::vector<double> distances = plane_distances(matches, local_from_source);
   evidence.inlier_share = share(count_within(distances, kInlierDistance), overlapping.size());
-  evidence.precision = balanced_share_within(matches, distances, kPreciseDistance);
   evidence.num_rays = rays.size();
   evidence.blocked_share = share(count_blocked(rays, map.finest(), local_from_source), rays.size());
   return evidence;

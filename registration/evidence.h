@@ -17,13 +17,26 @@ struct Ray {
   Eigen::Vector3d end = Eigen::Vector3d::Zero();
 };
 
+/// A flat piece of surface.
+struct SurfacePiece {
+  Eigen::Vector3d position = Eigen::Vector3d::Zero();  ///< [m]
+  Eigen::Vector3d normal = Eigen::Vector3d::UnitZ();   ///< unit, either sign
+};
+
+/// The flat voxels of a level [m, its local frame].
+std::vector<SurfacePiece> flat_pieces(const VoxelLevel& level);
+
+/// Share, 0 to 1, of the pieces near the map's coarsest level that lie on a surface of it, to 0.2 m and 20 degrees,
+/// every direction of space counted alike: ground fits anywhere, what stands on it only where it belongs. Does not
+/// depend on how densely the map was scanned.
+double surface_agreement(std::span<const SurfacePiece> pieces, const VoxelMap& map,
+                         const Eigen::Isometry3d& map_from_source);
+
 /// What speaks for and against points lying in a map as a pose says.
 struct Evidence {
   std::size_t num_points = 0;
   double overlap = 0;       ///< share of the points that have the map within a voxel of the coarsest level
   double inlier_share = 0;  ///< of the overlapping points: within 0.15 m of a plane of the finest level
-  double precision = 0;     ///< share of the matched points within 5 cm of their plane, every direction of space
-                            ///< counted alike: ground fits anywhere, what stands on it does not
   std::size_t num_rays = 0;
   double blocked_share = 0;  ///< of the rays: would have had to pass through a solid surface of the map
 
