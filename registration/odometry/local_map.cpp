@@ -1,45 +1,26 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "registration/odometry/local_map.h"
 
+#include <algorithm>
 #include <bit>
 #include <cmath>
 #include <sstream>
 #include <stdexcept>
+#include <string>
 
 namespace vdbmap::registration {
 namespace {
 
 constexpr float kNowhere = 1e9F;  // [m] a coordinate no point has; its square is still a float
 
-// A neighbour of a voxel: how far along each axis, and what leads there in a table of cells.
-struct Neighbor {
-  std::array<std::int8_t, 3> offset;
-  Cell step;
-};
+// The voxels before, at and after a point's along one axis, its own first.
+constexpr std::array kSteps = {0, -1, 1};
 
-// The voxel itself, then its neighbours across faces, edges and corners: the nearest mostly come first.
-constexpr std::array<Neighbor, 27> neighbors_by_distance() {
-  std::array<Neighbor, 27> neighbors{};
-  std::size_t count = 0;
-  for (int num_axes = 0; num_axes <= 3; ++num_axes) {
-    for (int i = 0; i < 27; ++i) {
-      const int x = i / 9 - 1;
-      const int y = i / 3 % 3 - 1;
-      const int z = i % 3 - 1;
-      if (x * x + y * y + z * z != num_axes) continue;
-      neighbors[count++] = {{static_cast<std::int8_t>(x), static_cast<std::int8_t>(y), static_cast<std::int8_t>(z)},
-                            cell_step(x, y, z)};
-    }
-  }
-  return neighbors;
-}
-constexpr std::array<Neighbor, 27> kNeighbors = neighbors_by_distance();
-
-// The squared distance of a point in a voxel from the voxels before, at and after it, along one axis.
+// Their squared distances from the point.
 std::array<float, 3> squared_gaps(float in_voxel, float voxel_size) {
   const float before = std::max(in_voxel, 0.0F);
   const float after = std::max(voxel_size - in_voxel, 0.0F);
-  return {before * before, 0, after * after};
+  return {0, before * before, after * after};
 }
 
 }  // namespace
@@ -69,7 +50,10 @@ LocalMap::Block::Block() {
   z.fill(kNowhere);
 }
 
-LocalMap::LocalMap(const LocalMapOptions& options) : options_(options), voxels_per_metre_(1 / options.voxel_size) {
+LocalMap::LocalMap(const LocalMapOptions& options)
+    : options_(options),
+      voxels_per_metre_(1 / options.voxel_size),
+      squared_spacing_(static_cast<float>(options.voxel_size * options.voxel_size / options.points_per_voxel)) {
   options.check();
 }
 
@@ -82,14 +66,20 @@ void LocalMap::insert(std::span<const Eigen::Vector3d> points) {
       blocks_.emplace_back();
       cells_.push_back(cell_of(voxel));
     }
-    Block& block = blocks_[number];
-    if (block.count == options_.points_per_voxel) continue;
-    const Eigen::Vector3f in_block = (point - corner_of_voxel(voxel, options_.voxel_size)).cast<float>();
-    const auto place = static_cast<std::size_t>(block.count++);
-    block.x[place] = in_block.x();
-    block.y[place] = in_block.y();
-    block.z[place] = in_block.z();
+    add((point - corner_of_voxel(voxel, options_.voxel_size)).cast<float>(), blocks_[number]);
   }
+}
+
+void LocalMap::add(const Eigen::Vector3f& point_in_block, Block& block) const {
+  if (block.count == options_.points_per_voxel) return;
+  Nearest too_near{squared_spacing_};
+  search(block, point_in_block, 0, too_near);
+  if (too_near.block != CellTable::kNone) return;
+
+  const auto place = static_cast<std::size_t>(block.count++);
+  block.x[place] = point_in_block.x();
+  block.y[place] = point_in_block.y();
+  block.z[place] = point_in_block.z();
 }
 
 void LocalMap::forget_far(const Eigen::Vector3d& sensor) {
@@ -140,22 +130,26 @@ Eigen::Vector3d LocalMap::point_of(std::uint32_t block, int place) const {
 std::optional<Eigen::Vector3d> LocalMap::nearest(const Eigen::Vector3d& point, double max_distance) const {
   if (!is_addressable(point, voxels_per_metre_)) return std::nullopt;
   const VoxelIndex voxel = voxel_of_point(point, voxels_per_metre_);
+  const Cell cell = cell_of(voxel);
   const auto size = static_cast<float>(options_.voxel_size);
   const Eigen::Vector3f in_voxel = (point - corner_of_voxel(voxel, options_.voxel_size)).cast<float>();
-  const std::array<float, 3> x_gaps = squared_gaps(in_voxel.x(), size);
-  const std::array<float, 3> y_gaps = squared_gaps(in_voxel.y(), size);
-  const std::array<float, 3> z_gaps = squared_gaps(in_voxel.z(), size);
+  const std::array gaps = {squared_gaps(in_voxel.x(), size), squared_gaps(in_voxel.y(), size),
+                           squared_gaps(in_voxel.z(), size)};
 
-  const Cell cell = cell_of(voxel);
+  // Voxels that begin farther away than the nearest point so far are passed over, whole rows and slices of them.
   Nearest nearest{static_cast<float>(max_distance * max_distance)};
-  for (const Neighbor& neighbor : kNeighbors) {
-    const auto& offset = neighbor.offset;
-    const float gap = x_gaps[static_cast<std::size_t>(offset[0] + 1)] +
-                      y_gaps[static_cast<std::size_t>(offset[1] + 1)] + z_gaps[static_cast<std::size_t>(offset[2] + 1)];
-    if (gap >= nearest.squared_distance) continue;
-    const std::uint32_t number = table_.find(cell + neighbor.step);
-    if (number == CellTable::kNone) continue;
-    search(blocks_[number], in_voxel - size * Eigen::Vector3f(offset[0], offset[1], offset[2]), number, nearest);
+  for (std::size_t i = 0; i < 3; ++i) {
+    if (gaps[0][i] >= nearest.squared_distance) continue;
+    for (std::size_t j = 0; j < 3; ++j) {
+      if (gaps[0][i] + gaps[1][j] >= nearest.squared_distance) continue;
+      for (std::size_t k = 0; k < 3; ++k) {
+        if (gaps[0][i] + gaps[1][j] + gaps[2][k] >= nearest.squared_distance) continue;
+        const std::uint32_t number = table_.find(cell + cell_step(kSteps[i], kSteps[j], kSteps[k]));
+        if (number == CellTable::kNone) continue;
+        const Eigen::Vector3f corner(kSteps[i], kSteps[j], kSteps[k]);
+        search(blocks_[number], in_voxel - size * corner, number, nearest);
+      }
+    }
   }
   if (nearest.block == CellTable::kNone) return std::nullopt;
   return point_of(nearest.block, nearest.place);

@@ -16,9 +16,9 @@ namespace vdbmap::registration {
 
 /// How much of the surroundings a LocalMap keeps; the values of KISS-ICP (Vizzo 2023, table I).
 struct LocalMapOptions {
-  double voxel_size = 1.0;     ///< [m]
-  int points_per_voxel = 20;   ///< at most, 1 to LocalMap::kCapacity
-  double max_distance = 100;   ///< [m] voxels farther from the sensor are forgotten
+  double voxel_size = 1.0;    ///< [m]
+  int points_per_voxel = 20;  ///< at most, 1 to LocalMap::kCapacity
+  double max_distance = 100;  ///< [m] voxels farther from the sensor are forgotten
 
   /// Throws std::invalid_argument naming the value and what is allowed.
   void check() const;
@@ -33,8 +33,9 @@ class LocalMap {
   /// Throws std::invalid_argument for bad options.
   explicit LocalMap(const LocalMapOptions& options);
 
-  /// Adds points [m, frame of the map], in their order, to voxels that are not full. Points whose voxel index has more
-  /// than 21 bits are left out.
+  /// Adds points [m, frame of the map], in their order, to voxels that are not full and hold none nearer than
+  /// voxel_size / sqrt(points_per_voxel): a sensor that stands still fills no voxel with copies of a point (so KISS-ICP
+  /// since 1.0). Points whose voxel index has more than 21 bits are left out.
   void insert(std::span<const Eigen::Vector3d> points);
 
   /// Forgets voxels whose centre is farther than the greatest distance from the sensor [m, frame of the map].
@@ -64,13 +65,15 @@ class LocalMap {
   };
   struct Nearest;
 
+  void add(const Eigen::Vector3f& point_in_block, Block& block) const;
   static void search(const Block& block, const Eigen::Vector3f& point_in_block, std::uint32_t number, Nearest& nearest);
   Eigen::Vector3d point_of(std::uint32_t block, int place) const;
 
   LocalMapOptions options_;
   double voxels_per_metre_;
-  CellTable table_;           // the block of each cell
-  std::vector<Cell> cells_;   // one a block
+  float squared_spacing_;    // [m^2]
+  CellTable table_;          // the block of each cell
+  std::vector<Cell> cells_;  // one a block
   std::vector<Block> blocks_;
 };
 

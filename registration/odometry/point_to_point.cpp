@@ -8,6 +8,7 @@
 #include <vector>
 
 #include <Eigen/Cholesky>
+#include <Eigen/LU>
 
 #include "vdbmap/core/parallel.h"
 
@@ -17,51 +18,85 @@ namespace {
 constexpr std::size_t kMinMatches = 6;       // as many as unknowns
 constexpr std::size_t kPointsPerPart = 256;  // summed one after the other, whatever the number of threads
 
-// A point and its neighbour.
+// A point and its neighbour: residual r, Jacobian J = (-[arm]x, I).
 struct Match {
   Eigen::Vector3d arm;       // from the sensor to the point, axes of the map
   Eigen::Vector3d residual;  // from the neighbour to the point
+
+  // J^T r
+  Vector6d pull() const {
+    Vector6d pull;
+    pull.head<3>() = arm.cross(residual);
+    pull.tail<3>() = residual;
+    return pull;
+  }
 };
 
-void add(MatchSums& sums, const Match& match, const MatchLimits& limits) {
-  const double squared = match.residual.squaredNorm();
-  const double ratio = limits.kernel / (limits.kernel + squared);
-  const double weight = ratio * ratio;
+// kappa / (kappa + r^2), the root of the weight.
+double kernel_ratio(const Match& match, const MatchLimits& limits) {
+  return limits.kernel / (limits.kernel + match.residual.squaredNorm());
+}
 
-  // J = (-[arm]x, I), written out: the sums by J^T need no product of matrices.
-  Vector6d pull;
-  pull.head<3>() = match.arm.cross(match.residual);
-  pull.tail<3>() = match.residual;
+// Calls body(match, part) for each point that has a neighbour. Parts of fixed size follow one another in their order;
+// within one, so do the points.
+template <typename Sums, typename Body>
+std::vector<Sums> for_matches(std::span<const Eigen::Vector3d> points_in_scan, const LocalMap& map,
+                              const Eigen::Isometry3d& map_from_scan, double max_distance, const Body& body) {
+  std::vector<Sums> parts((points_in_scan.size() + kPointsPerPart - 1) / kPointsPerPart);
+  parallel_for(parts.size(), [&](std::size_t part) {
+    const std::size_t begin = part * kPointsPerPart;
+    const std::size_t end = std::min(begin + kPointsPerPart, points_in_scan.size());
+    Sums sums;
+    for (std::size_t i = begin; i < end; ++i) {
+      const Eigen::Vector3d arm = map_from_scan.linear() * points_in_scan[i];
+      const Eigen::Vector3d point = arm + map_from_scan.translation();
+      const auto neighbor = map.nearest(point, max_distance);
+      if (neighbor) body(Match{arm, point - *neighbor}, sums);
+    }
+    parts[part] = sums;
+  });
+  return parts;
+}
+
+// The products by J written out, the upper triangle of the information only.
+void add(const Match& match, const MatchLimits& limits, MatchSums& sums) {
+  const double squared = match.residual.squaredNorm();
+  const double ratio = kernel_ratio(match, limits);
+  const double weight = ratio * ratio;
   const Eigen::Matrix3d cross = weight * cross_matrix(match.arm);
   sums.cost += 0.5 * ratio * squared;
-  sums.gradient += weight * pull;
+  sums.gradient += weight * match.pull();
   sums.information.topLeftCorner<3, 3>() -= cross * cross_matrix(match.arm);
   sums.information.topRightCorner<3, 3>() += cross;
   sums.information.bottomRightCorner<3, 3>().diagonal().array() += weight;
-  sums.scatter.triangularView<Eigen::Upper>() += (weight * pull) * (weight * pull).transpose();
   ++sums.num_matches;
   if (squared <= limits.inlier_distance * limits.inlier_distance) ++sums.num_inliers;
 }
 
-MatchSums sum_part(std::span<const Eigen::Vector3d> points_in_scan, const LocalMap& map,
-                   const Eigen::Isometry3d& map_from_scan, const MatchLimits& limits) {
-  MatchSums sums;
-  for (const Eigen::Vector3d& point : points_in_scan) {
-    const Eigen::Vector3d arm = map_from_scan.linear() * point;
-    const Eigen::Vector3d point_in_map = arm + map_from_scan.translation();
-    const auto neighbor = map.nearest(point_in_map, limits.max_distance);
-    if (neighbor) add(sums, {arm, point_in_map - *neighbor}, limits);
-  }
-  return sums;
-}
-
-void add(MatchSums& sums, const MatchSums& part) {
+void add(const MatchSums& part, MatchSums& sums) {
   sums.cost += part.cost;
   sums.gradient += part.gradient;
   sums.information += part.information;
-  sums.scatter += part.scatter;
   sums.num_matches += part.num_matches;
   sums.num_inliers += part.num_inliers;
+}
+
+// Sum of w^2 J^T r r^T J.
+struct Scatter {
+  Matrix6d sum = Matrix6d::Zero();
+};
+
+Matrix6d scatter_of(std::span<const Eigen::Vector3d> points_in_scan, const LocalMap& map,
+                    const Eigen::Isometry3d& map_from_scan, const MatchLimits& limits) {
+  const auto parts = for_matches<Scatter>(points_in_scan, map, map_from_scan, limits.max_distance,
+                                          [&](const Match& match, Scatter& scatter) {
+                                            const double ratio = kernel_ratio(match, limits);
+                                            const Vector6d pull = ratio * ratio * match.pull();
+                                            scatter.sum += pull * pull.transpose();
+                                          });
+  Matrix6d sum = Matrix6d::Zero();
+  for (const Scatter& part : parts) sum += part.sum;
+  return sum;
 }
 
 void require_positive(const char* name, double value) {
@@ -79,17 +114,22 @@ void MatchLimits::check() const {
 
 MatchSums sum_matches(std::span<const Eigen::Vector3d> points_in_scan, const LocalMap& map,
                       const Eigen::Isometry3d& map_from_scan, const MatchLimits& limits) {
-  std::vector<MatchSums> parts((points_in_scan.size() + kPointsPerPart - 1) / kPointsPerPart);
-  parallel_for(parts.size(), [&](std::size_t part) {
-    const std::size_t begin = part * kPointsPerPart;
-    const std::size_t count = std::min(kPointsPerPart, points_in_scan.size() - begin);
-    parts[part] = sum_part(points_in_scan.subspan(begin, count), map, map_from_scan, limits);
-  });
+  const auto parts = for_matches<MatchSums>(points_in_scan, map, map_from_scan, limits.max_distance,
+                                            [&](const Match& match, MatchSums& sums) { add(match, limits, sums); });
   MatchSums sums;
-  for (const MatchSums& part : parts) add(sums, part);
+  for (const MatchSums& part : parts) add(part, sums);
   sums.information = sums.information.selfadjointView<Eigen::Upper>();
-  sums.scatter = sums.scatter.selfadjointView<Eigen::Upper>();
   return sums;
+}
+
+std::optional<Matrix6d> match_covariance(std::span<const Eigen::Vector3d> points_in_scan, const LocalMap& map,
+                                         const Eigen::Isometry3d& map_from_scan, const MatchLimits& limits) {
+  const MatchSums sums = sum_matches(points_in_scan, map, map_from_scan, limits);
+  const Eigen::FullPivLU<Matrix6d> solver(sums.information);
+  if (sums.num_matches < kMinMatches || !solver.isInvertible()) return std::nullopt;
+  const Matrix6d inverse = solver.inverse();
+  const Matrix6d covariance = inverse * scatter_of(points_in_scan, map, map_from_scan, limits) * inverse.transpose();
+  return 0.5 * (covariance + covariance.transpose());
 }
 
 PointToPointResult align_points(std::span<const Eigen::Vector3d> points_in_scan, const LocalMap& map,

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <cstddef>
+#include <optional>
 #include <span>
 
 #include <Eigen/Geometry>
@@ -28,7 +29,6 @@ struct MatchSums {
   double cost = 0;                          ///< [m^2]
   Vector6d gradient = Vector6d::Zero();     ///< of the cost: sum of w J^T r
   Matrix6d information = Matrix6d::Zero();  ///< sum of w J^T J
-  Matrix6d scatter = Matrix6d::Zero();      ///< sum of w^2 J^T r r^T J
   std::size_t num_matches = 0;
   std::size_t num_inliers = 0;
 };
@@ -36,6 +36,12 @@ struct MatchSums {
 /// The same for any number of threads.
 MatchSums sum_matches(std::span<const Eigen::Vector3d> points_in_scan, const LocalMap& map,
                       const Eigen::Isometry3d& map_from_scan, const MatchLimits& limits);
+
+/// Covariance of the pose at which the points match: rotation [rad^2] about the sensor, then translation [m^2], axes of
+/// the map. The sandwich of White (1980), so that the spread of the residuals counts as it is. Nothing where the points
+/// do not determine the pose.
+std::optional<Matrix6d> match_covariance(std::span<const Eigen::Vector3d> points_in_scan, const LocalMap& map,
+                                         const Eigen::Isometry3d& map_from_scan, const MatchLimits& limits);
 
 /// How a scan is moved to the map.
 struct PointToPointOptions {
