@@ -15,7 +15,8 @@
 namespace vdbmap::registration {
 namespace {
 
-constexpr std::size_t kMinMatches = 6;       // as many as unknowns
+constexpr std::size_t kMinMatches = 6;  // as many as unknowns
+constexpr std::size_t kPointsPerCluster = 32;
 constexpr std::size_t kPointsPerPart = 256;  // summed one after the other, whatever the number of threads
 
 // A point and its neighbour: residual r, Jacobian J = (-[arm]x, I).
@@ -41,11 +42,12 @@ double kernel_ratio(const Match& match, const MatchLimits& limits) {
 // within one, so do the points.
 template <typename Sums, typename Body>
 std::vector<Sums> for_matches(std::span<const Eigen::Vector3d> points_in_scan, const LocalMap& map,
-                              const Eigen::Isometry3d& map_from_scan, double max_distance, const Body& body) {
-  std::vector<Sums> parts((points_in_scan.size() + kPointsPerPart - 1) / kPointsPerPart);
+                              const Eigen::Isometry3d& map_from_scan, double max_distance, std::size_t points_per_part,
+                              const Body& body) {
+  std::vector<Sums> parts((points_in_scan.size() + points_per_part - 1) / points_per_part);
   parallel_for(parts.size(), [&](std::size_t part) {
-    const std::size_t begin = part * kPointsPerPart;
-    const std::size_t end = std::min(begin + kPointsPerPart, points_in_scan.size());
+    const std::size_t begin = part * points_per_part;
+    const std::size_t end = std::min(begin + points_per_part, points_in_scan.size());
     Sums sums;
     for (std::size_t i = begin; i < end; ++i) {
       const Eigen::Vector3d arm = map_from_scan.linear() * points_in_scan[i];
@@ -81,22 +83,24 @@ void add(const MatchSums& part, MatchSums& sums) {
   sums.num_inliers += part.num_inliers;
 }
 
-// Sum of w^2 J^T r r^T J.
-struct Scatter {
-  Matrix6d sum = Matrix6d::Zero();
+// Sum of w J^T r.
+struct Pull {
+  Vector6d sum = Vector6d::Zero();
 };
 
+// Sum of the outer products of the pulls, points near each other in the scan taken together.
 Matrix6d scatter_of(std::span<const Eigen::Vector3d> points_in_scan, const LocalMap& map,
                     const Eigen::Isometry3d& map_from_scan, const MatchLimits& limits) {
-  const auto parts = for_matches<Scatter>(points_in_scan, map, map_from_scan, limits.max_distance,
-                                          [&](const Match& match, Scatter& scatter) {
-                                            const double ratio = kernel_ratio(match, limits);
-                                            const Vector6d pull = ratio * ratio * match.pull();
-                                            scatter.sum += pull * pull.transpose();
-                                          });
-  Matrix6d sum = Matrix6d::Zero();
-  for (const Scatter& part : parts) sum += part.sum;
-  return sum;
+  const auto add_pull = [&](const Match& match, Pull& pull) {
+    const double ratio = kernel_ratio(match, limits);
+    pull.sum += ratio * ratio * match.pull();
+  };
+  Matrix6d scatter = Matrix6d::Zero();
+  for (const Pull& part :
+       for_matches<Pull>(points_in_scan, map, map_from_scan, limits.max_distance, kPointsPerCluster, add_pull)) {
+    scatter += part.sum * part.sum.transpose();
+  }
+  return scatter;
 }
 
 void require_positive(const char* name, double value) {
@@ -114,7 +118,7 @@ void MatchLimits::check() const {
 
 MatchSums sum_matches(std::span<const Eigen::Vector3d> points_in_scan, const LocalMap& map,
                       const Eigen::Isometry3d& map_from_scan, const MatchLimits& limits) {
-  const auto parts = for_matches<MatchSums>(points_in_scan, map, map_from_scan, limits.max_distance,
+  const auto parts = for_matches<MatchSums>(points_in_scan, map, map_from_scan, limits.max_distance, kPointsPerPart,
                                             [&](const Match& match, MatchSums& sums) { add(match, limits, sums); });
   MatchSums sums;
   for (const MatchSums& part : parts) add(part, sums);
