@@ -4,38 +4,6 @@
 #include <cmath>
 
 namespace vdbmap::registration {
-namespace {
-
-Eigen::Matrix3d rotation_of(const Eigen::Vector3d& rotation_vector) {
-  const double angle = rotation_vector.norm();
-  if (angle < 1e-12) return Eigen::Matrix3d::Identity();
-  return Eigen::AngleAxisd(angle, rotation_vector / angle).toRotationMatrix();
-}
-
-Eigen::Matrix3d cross_matrix(const Eigen::Vector3d& v) {
-  Eigen::Matrix3d matrix;
-  matrix << 0, -v.z(), v.y(), v.z(), 0, -v.x(), -v.y(), v.x(), 0;
-  return matrix;
-}
-
-// Right Jacobian of SO(3): exp(w + d) = exp(w) exp(J_r(w) d) for small d (Sola, Deray & Atchuthan 2018, eq. 143).
-Eigen::Matrix3d right_jacobian(const Eigen::Vector3d& rotation_vector) {
-  const double angle = rotation_vector.norm();
-  const Eigen::Matrix3d cross = cross_matrix(rotation_vector);
-  if (angle < 1e-6) return Eigen::Matrix3d::Identity() - 0.5 * cross;
-  const double squared = angle * angle;
-  return Eigen::Matrix3d::Identity() - (1 - std::cos(angle)) / squared * cross +
-         (angle - std::sin(angle)) / (squared * angle) * cross * cross;
-}
-
-}  // namespace
-
-Eigen::Isometry3d moved_by(const Eigen::Isometry3d& map_from_scan, const Vector6d& motion) {
-  Eigen::Isometry3d moved = Eigen::Isometry3d::Identity();
-  moved.linear() = rotation_of(motion.head<3>()) * map_from_scan.linear();
-  moved.translation() = map_from_scan.translation() + motion.tail<3>();
-  return moved;
-}
 
 PlaneResiduals::PlaneResiduals(std::span<const PlaneMatch> matches, std::span<const double> weights,
                                const Eigen::Isometry3d& map_from_scan)

@@ -7,15 +7,9 @@
 #include <Eigen/Geometry>
 
 #include "registration/fine/plane_match.h"
+#include "registration/rigid_motion.h"
 
 namespace vdbmap::registration {
-
-using Vector6d = Eigen::Matrix<double, 6, 1>;
-using Matrix6d = Eigen::Matrix<double, 6, 6>;
-
-/// A small motion of the scan in the map: rotation vector [rad] about the sensor, then translation [m]; axes of the
-/// map.
-Eigen::Isometry3d moved_by(const Eigen::Isometry3d& map_from_scan, const Vector6d& motion);
 
 /// All point-to-plane distances of a scan as one cost function for Ceres' TinySolver: residual i is
 /// sqrt(w_i) n_i . (map_from_scan(motion) p_i - m_i) [m], with its analytic Jacobian by the motion.

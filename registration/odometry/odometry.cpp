@@ -1,0 +1,196 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "registration/odometry/odometry.h"
+
+#include <cmath>
+#include <limits>
+#include <sstream>
+#include <stdexcept>
+#include <utility>
+
+#include "registration/odometry/wide_search.h"
+
+namespace vdbmap::registration {
+namespace {
+
+constexpr std::size_t kMinPoints = 20;  // aligned: fewer do not hold a pose
+
+// Of the aligned points, share within half a voxel of the map. On KITTI streets scans keep above 0.73 (64 rings and 16)
+// where they belong, and below 0.55 where a gap made them rest a few metres off.
+constexpr double kTrustedInlierShare = 0.7;  // below, a wide search is tried; and what that finds must reach it
+constexpr double kMinInlierShare = 0.6;
+
+double inlier_share(const PointToPointResult& result, std::size_t num_points) {
+  return static_cast<double>(result.matches.num_inliers) / static_cast<double>(num_points);
+}
+
+std::string reason_for_few(const PointCloud& scan, std::size_t num_points, const OdometryOptions& options) {
+  if (scan.empty()) return "it holds no points";
+  std::ostringstream reason;
+  reason << "only " << num_points << " of " << scan.size() << " points are left within " << options.range.min << " to "
+         << options.range.max << " m and " << options.registration_spacing * options.voxel_size << " m apart, "
+         << kMinPoints << " are needed";
+  return reason.str();
+}
+
+LocalMapOptions map_options(const OdometryOptions& options) {
+  return {options.voxel_size, options.points_per_voxel, options.range.max};
+}
+
+const OdometryOptions& checked(const OdometryOptions& options) {
+  options.check();
+  return options;
+}
+
+std::vector<Eigen::Vector3d> moved(std::vector<Eigen::Vector3d> points, const Eigen::Isometry3d& target_from_points) {
+  for (Eigen::Vector3d& point : points) point = target_from_points * point;
+  return points;
+}
+
+// The covariance of a pose by the axes of another frame.
+Matrix6d with_axes_of(const Matrix6d& covariance, const Eigen::Matrix3d& axes) {
+  Matrix6d turn = Matrix6d::Zero();
+  turn.topLeftCorner<3, 3>() = axes.transpose();
+  turn.bottomRightCorner<3, 3>() = axes.transpose();
+  return turn * covariance * turn.transpose();
+}
+
+}  // namespace
+
+void OdometryOptions::check() const {
+  const auto require = [](bool condition, const char* name, double value, const char* allowed) {
+    if (condition) return;
+    std::ostringstream message;
+    message << name << " is " << value << ", expected " << allowed;
+    throw std::invalid_argument(message.str());
+  };
+  require(range.min >= 0, "range.min", range.min, "0 m or more");
+  require(range.max > range.min && std::isfinite(range.max), "range.max", range.max, "more than range.min");
+  require(map_spacing > 0 && map_spacing <= 10, "map_spacing", map_spacing, "more than 0, at most 10 voxels");
+  require(registration_spacing >= map_spacing && registration_spacing <= 10, "registration_spacing",
+          registration_spacing, "map_spacing to 10 voxels");
+  require(initial_threshold > 0, "initial_threshold", initial_threshold, "more than 0 m");
+  require(min_deviation > 0, "min_deviation", min_deviation, "more than 0 m");
+  require(max_iterations > 0, "max_iterations", max_iterations, "1 or more");
+  require(convergence > 0, "convergence", convergence, "more than 0");
+}
+
+std::vector<Eigen::Vector3d> Odometry::Sample::deskewed(const Vector6d& twist) const {
+  return times.empty() || twist.isZero(0) ? positions : deskew_points(positions, times, {first_time, twist});
+}
+
+Odometry::Odometry(const OdometryOptions& options)
+    : options_(checked(options)),
+      threshold_(options.initial_threshold, options.min_deviation, options.range.max),
+      map_(map_options(options)) {}
+
+// Thinned before it is deskewed, which costs a tenth of the reverse and only lets other points stand for their cube.
+Odometry::Sample Odometry::sample_of(const PointCloud& scan, const ScanTiming& timing) const {
+  const bool has_times = timing.first && options_.deskews;
+  Sample sample;
+  sample.first_time = timing.first.value_or(0);
+  for (const std::uint32_t i :
+       sample_indices(scan.positions, options_.map_spacing * options_.voxel_size, options_.range)) {
+    sample.positions.push_back(scan.positions[i]);
+    if (has_times) sample.times.push_back(scan.times[i]);
+  }
+  return sample;
+}
+
+PointToPointOptions Odometry::alignment_options(double sigma) const {
+  PointToPointOptions options;
+  options.limits.max_distance = 3 * sigma;
+  options.limits.kernel = sigma / 3;
+  options.limits.inlier_distance = options_.voxel_size / 2;
+  options.max_iterations = options_.max_iterations;
+  options.convergence = options_.convergence;
+  return options;
+}
+
+Odometry::Alignment Odometry::align(const Sample& sample, const Vector6d& twist, const Eigen::Isometry3d& guess,
+                                    double sigma) const {
+  constexpr RangeLimits kAll{0, std::numeric_limits<double>::infinity()};
+  Alignment alignment;
+  alignment.points = sample.deskewed(twist);
+  alignment.aligned_points = sample_points(alignment.points, options_.registration_spacing * options_.voxel_size, kAll);
+  alignment.result = align_points(alignment.aligned_points, map_, guess, alignment_options(sigma));
+  return alignment;
+}
+
+OdometryStep Odometry::register_scan(const PointCloud& scan) {
+  const ScanTiming timing = clock_.next(scan);
+  const Sample sample = sample_of(scan, timing);
+  OdometryStep step;
+  step.has_time = timing.first.has_value();
+  step.time_problem = timing.problem;
+  step.motion.reference_time = sample.first_time;
+  step.sigma = threshold_.sigma();
+  seconds_since_registered_ += timing.interval;
+  step.first_from_scan = first_from_registered_ * motion_of_twist(seconds_since_registered_ * twist_);
+
+  Alignment alignment = align(sample, twist_, step.first_from_scan, step.sigma);
+  step.num_points = alignment.aligned_points.size();
+  if (step.num_points < kMinPoints) {
+    step.reason = reason_for_few(scan, step.num_points, options_);
+  } else if (map_.empty()) {
+    start(sample, alignment);
+  } else {
+    straighten_first_scan(sample, alignment);
+    search_if_lost(alignment, step);
+    finish(alignment, step);
+  }
+  return step;
+}
+
+void Odometry::start(const Sample& sample, const Alignment& alignment) {
+  map_.insert(alignment.points);
+  if (!sample.times.empty()) first_sample_ = sample;
+  seconds_since_registered_ = 0;
+}
+
+// The first scan was taken as if the sensor had stood still. Now that its motion is known the map begins anew.
+void Odometry::straighten_first_scan(const Sample& second, Alignment& alignment) {
+  constexpr int kRounds = 3;
+  if (!first_sample_) return;
+  for (int round = 0; round < kRounds; ++round) {
+    const Vector6d twist = twist_of_motion(alignment.result.map_from_scan) / seconds_since_registered_;
+    map_ = LocalMap(map_options(options_));
+    map_.insert(first_sample_->deskewed(twist));
+    alignment = align(second, twist, alignment.result.map_from_scan, threshold_.sigma());
+  }
+  first_sample_.reset();
+}
+
+void Odometry::search_if_lost(Alignment& alignment, OdometryStep& step) const {
+  if (inlier_share(alignment.result, step.num_points) >= kTrustedInlierShare) return;
+  const PointToPointResult found = search_widely(alignment.aligned_points, map_, step.first_from_scan,
+                                                 alignment_options(options_.initial_threshold / 2));
+  if (found.matches.num_inliers <= alignment.result.matches.num_inliers) return;
+  alignment.result = found;
+  step.was_refound = true;
+}
+
+void Odometry::finish(const Alignment& alignment, OdometryStep& step) {
+  const PointToPointResult& result = alignment.result;
+  step.num_iterations = result.num_iterations;
+  step.inlier_share = inlier_share(result, step.num_points);
+  if (step.inlier_share < (step.was_refound ? kTrustedInlierShare : kMinInlierShare)) {
+    step.reason = "only " + std::to_string(std::lround(100 * step.inlier_share)) +
+                  " % of its points lie on those of the scans before";
+    return;
+  }
+  const auto covariance =
+      match_covariance(alignment.aligned_points, map_, result.map_from_scan, alignment_options(step.sigma).limits);
+  if (covariance) step.covariance = with_axes_of(*covariance, first_from_registered_.linear());
+  if (!step.was_refound) threshold_.add_deviation(step.first_from_scan.inverse() * result.map_from_scan);
+  step.first_from_scan = result.map_from_scan;
+  step.previous_from_scan = first_from_registered_.inverse() * result.map_from_scan;
+
+  map_.insert(moved(alignment.points, result.map_from_scan));
+  map_.forget_far(result.map_from_scan.translation());
+  first_from_registered_ = result.map_from_scan;
+  twist_ = twist_of_motion(step.previous_from_scan) / seconds_since_registered_;
+  seconds_since_registered_ = 0;
+  if (step.has_time) step.motion.twist = twist_;
+}
+
+}  // namespace vdbmap::registration
