@@ -13,6 +13,23 @@ namespace {
 
 constexpr double kDegPerRad = 180 / std::numbers::pi;
 
+double median_of(std::vector<double>& values) {
+  const auto middle = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
+  std::nth_element(values.begin(), middle, values.end());
+  if (values.size() % 2 == 1) return *middle;
+  return (*std::max_element(values.begin(), middle) + *middle) / 2;
+}
+
+ErrorSummary summary_of(const std::vector<std::optional<PoseError>>& poses, double PoseError::*member) {
+  std::vector<double> values;
+  for (const std::optional<PoseError>& pose : poses) {
+    if (pose) values.push_back((*pose).*member);
+  }
+  return summarize(std::move(values));
+}
+
+}  // namespace
+
 PoseError pose_error(const Eigen::Isometry3d& map_from_estimate, const Eigen::Isometry3d& map_from_truth) {
   const Eigen::Vector3d shift = map_from_estimate.translation() - map_from_truth.translation();
   const Eigen::Quaterniond truth(map_from_truth.linear());
@@ -21,14 +38,7 @@ PoseError pose_error(const Eigen::Isometry3d& map_from_estimate, const Eigen::Is
   return {shift.head<2>().norm(), shift.z(), shift.norm(), truth.angularDistance(estimate) * kDegPerRad};
 }
 
-double median_of(std::vector<double>& values) {
-  const auto middle = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
-  std::nth_element(values.begin(), middle, values.end());
-  if (values.size() % 2 == 1) return *middle;
-  return (*std::max_element(values.begin(), middle) + *middle) / 2;
-}
-
-ErrorSummary summary_of(std::vector<double> values) {
+ErrorSummary summarize(std::vector<double> values) {
   if (values.empty()) return {};
   double sum = 0;
   double sum_of_squares = 0;
@@ -45,16 +55,6 @@ ErrorSummary summary_of(std::vector<double> values) {
   summary.median = median_of(values);
   return summary;
 }
-
-ErrorSummary summary_of(const std::vector<std::optional<PoseError>>& poses, double PoseError::*member) {
-  std::vector<double> values;
-  for (const std::optional<PoseError>& pose : poses) {
-    if (pose) values.push_back((*pose).*member);
-  }
-  return summary_of(std::move(values));
-}
-
-}  // namespace
 
 TrajectoryError evaluate_trajectory(const Trajectory& estimate, const Trajectory& truth) {
   if (estimate.size() != truth.size()) {

@@ -18,6 +18,9 @@ struct PoseError {
   double rotation_deg = 0;  ///< [deg] angle of the rotation between them, 0..180
 };
 
+/// How far an estimate is from the truth.
+PoseError pose_error(const Eigen::Isometry3d& map_from_estimate, const Eigen::Isometry3d& map_from_truth);
+
 /// Statistics of absolute values; nan where there is none.
 struct ErrorSummary {
   double median = std::numeric_limits<double>::quiet_NaN();
@@ -25,6 +28,9 @@ struct ErrorSummary {
   double rms = std::numeric_limits<double>::quiet_NaN();
   double max = std::numeric_limits<double>::quiet_NaN();
 };
+
+/// The statistics of values; their signs do not count.
+ErrorSummary summarize(std::vector<double> values);
 
 /// A pose counts as found when it is at most so far off in both.
 struct SuccessThreshold {

@@ -44,4 +44,4 @@ vdbmap import demo/channels.vdb -o demo/imported.vdb
 vdbmap build "$data/velodyne" --poses "$data/poses.txt" --every 2 --offset 1 -o demo/odd.vdb
 vdbmap merge demo/map.vdb demo/odd.vdb -o demo/both.vdb
 vdbmap localize demo/map.vdb "$data/velodyne" --every 2 --offset 1 --initial demo/guesses.txt -o demo/poses.txt
-vdbmap evaluate demo/poses.txt "$data/poses.txt" --every 2 --offset 1
+vdbmap evaluate demo/poses.txt "$data/poses.txt" --every 2 --offset 1 --plot demo/evaluation.png

@@ -6,6 +6,8 @@ build_packages=(
   libceres-dev libcli11-dev libeigen3-dev libopenvdb-dev libpcap-dev libspdlog-dev libtbb-dev libxxhash-dev nlohmann-json3-dev
   # OpenVDB's find module wants these; libopenvdb-dev does not depend on them.
   libblosc-dev libboost-iostreams-dev zlib1g-dev
+  # Pictures and their letters; the CMake config of OpenImageIO wants its tools too.
+  fonts-dejavu-core libopenimageio-dev openimageio-tools
 )
 test_packages=(libbenchmark-dev libgmock-dev libgtest-dev)
 benchmark_packages=(jq time)

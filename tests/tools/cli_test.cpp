@@ -107,10 +107,14 @@ TEST_F(Evaluate, PrintsATable) {
             "XY [m]             0.2500    0.2500    0.2500    0.2500\n"
             "Z [m]              0.0000    0.0000    0.0000    0.0000\n"
             "XYZ [m]            0.2500    0.2500    0.2500    0.2500\n"
+            "aligned [m]        0.0000    0.0000    0.0000    0.0000\n"
             "rotation [deg]     0.0000    0.0000    0.0000    0.0000\n"
             "within 0.1 m and 0.5 deg: 0.0 %\n"
             "within 2 m and 5 deg: 100.0 %\n"
-            "missing: 0 of 3 poses\n");
+            "missing: 0 of 3 poses\n"
+            "\n"
+            "drift, mean      segments   way [m]       [m]       [%]   [deg/m]\n"
+            "over 1 m                1      2.00    0.0000     0.000   0.00000\n");
 }
 
 TEST_F(Evaluate, SelectsLinesOfTheTruth) {

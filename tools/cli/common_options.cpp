@@ -13,7 +13,10 @@ constexpr int kMaxThreads = 1024;
 
 void add_common_options(CLI::App& app, CommonOptions& options) {
   const std::string group = "Common options";
-  app.add_flag("--json", options.json, "Print the result as JSON")->group(group);
+  // A command that also writes JSON files has declared an option of its own.
+  if (!app.get_option_no_throw("--json")) {
+    app.add_flag("--json", options.json, "Print the result as JSON")->group(group);
+  }
   app.add_option("--threads", options.num_threads, "Work with at most N threads (0: one a core)")
       ->check(CLI::Range(0, kMaxThreads).description(""))
       ->type_name("N")

@@ -14,7 +14,7 @@ struct CommonOptions {
   bool quiet = false;           ///< no progress, no log below errors
 };
 
-/// Declares --json, --threads and --quiet on a command.
+/// Declares --threads, --quiet and, unless the command has one, --json.
 void add_common_options(CLI::App& app, CommonOptions& options);
 
 }  // namespace vdbmap::cli

@@ -1,97 +1,127 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
+#include <algorithm>
 #include <filesystem>
-#include <optional>
 #include <string>
 #include <vector>
 
 #include <nlohmann/json.hpp>
 #include <spdlog/fmt/fmt.h>
 
-#include "registration/trajectory_error.h"
+#include "registration/evaluation/time_association.h"
+#include "registration/evaluation/trajectory_plot.h"
 #include "tools/cli/command.h"
+#include "tools/cli/evaluation_text.h"
+#include "tools/cli/map_output.h"
 #include "tools/cli/output.h"
 #include "tools/cli/scan_selection.h"
+#include "vdbmap/core/error.h"
 #include "vdbmap/io/trajectory_file.h"
 
 namespace vdbmap::cli {
 namespace {
 
-using registration::ErrorSummary;
-using registration::success_rate;
-using registration::SuccessThreshold;
-using registration::TrajectoryError;
-
 struct EvaluateOptions {
   std::filesystem::path estimate;
   std::filesystem::path truth;
   ScanSelection selection;
+  double max_time_difference = registration::kMaxTimeDifference;
+  std::filesystem::path plot;
+  bool has_json = false;
+  std::filesystem::path json;
 };
+
+/// Estimated poses beside the true ones of the same scans.
+struct Comparison {
+  Trajectory estimate;
+  Trajectory truth;
+  std::size_t num_unmatched = 0;
+};
+
+std::string check_json_name(const std::string& name) {
+  if (name.empty() || name.ends_with(".json")) return "";
+  return "would write into '" + name + "', expected a name that ends in .json; put --json behind the poses";
+}
+
+// CLI11 takes the word behind --json for the file's name, so that a word that cannot be meant is refused.
+void add_json(CLI::App& app, EvaluateOptions& options) {
+  const auto take = [&options](const CLI::results_t& words) {
+    options.has_json = true;
+    options.json = words.front();
+    return true;
+  };
+  app.add_option("--json", take, "Print the result as JSON, or write it to FILE (.json) and print the table")
+      ->expected(0, 1)
+      ->check(check_json_name)
+      ->type_name("[FILE]");
+}
 
 void add_options(CLI::App& app, EvaluateOptions& options) {
   app.add_option("ESTIMATE", options.estimate, "Estimated poses (KITTI or TUM)")->type_name("FILE")->required();
   app.add_option("TRUTH", options.truth, "True poses (KITTI or TUM)")->type_name("FILE")->required();
   add_scan_selection(app, options.selection);
+  app.add_option("--max-time-difference", options.max_time_difference,
+                 "Two TUM files are compared by time: so far apart the times of a scan may be [s]")
+      ->check(CLI::NonNegativeNumber.description(""))
+      ->type_name("S")
+      ->capture_default_str();
+  app.add_option("--plot", options.plot, "Draw the plan view, the histograms and the figures into this .png file")
+      ->type_name("FILE");
+  add_json(app, options);
 }
 
-std::string text_row(const std::string& name, const ErrorSummary& summary) {
-  return fmt::format("{:<15}{:>10.4f}{:>10.4f}{:>10.4f}{:>10.4f}\n", name, summary.median, summary.mean, summary.rms,
-                     summary.max);
-}
-
-std::string success_row(const TrajectoryError& error, const SuccessThreshold& threshold) {
-  return fmt::format("within {} m and {} deg: {:.1f} %\n", threshold.translation, threshold.rotation_deg,
-                     100 * success_rate(error, threshold));
-}
-
-std::string text_of(const TrajectoryError& error) {
-  return fmt::format("{:<15}{:>10}{:>10}{:>10}{:>10}\n", "error", "median", "mean", "rms", "max") +
-         text_row("XY [m]", error.xy) + text_row("Z [m]", error.z) + text_row("XYZ [m]", error.translation) +
-         text_row("rotation [deg]", error.rotation_deg) + success_row(error, registration::kFineSuccess) +
-         success_row(error, registration::kCoarseSuccess) +
-         fmt::format("missing: {} of {} poses\n", error.num_missing, error.num_judged);
-}
-
-nlohmann::ordered_json json_of(const ErrorSummary& summary) {
-  return {{"median", summary.median}, {"mean", summary.mean}, {"rms", summary.rms}, {"max", summary.max}};
-}
-
-nlohmann::ordered_json json_of(const TrajectoryError& error, const SuccessThreshold& threshold) {
-  return {{"max_translation_m", threshold.translation},
-          {"max_rotation_deg", threshold.rotation_deg},
-          {"rate", success_rate(error, threshold)}};
-}
-
-nlohmann::ordered_json json_of(const std::vector<std::optional<registration::PoseError>>& poses) {
-  auto array = nlohmann::ordered_json::array();
-  for (const auto& pose : poses) {
-    if (pose) {
-      array.push_back({{"xy_m", pose->xy}, {"z_m", pose->z}, {"rotation_deg", pose->rotation_deg}});
-    } else {
-      array.push_back(nullptr);
-    }
+void check_outputs(const EvaluateOptions& options) {
+  for (const std::filesystem::path& output : {options.plot, options.json}) {
+    if (!output.empty()) check_output(output, {options.estimate, options.truth});
   }
-  return array;
 }
 
-nlohmann::ordered_json json_of(const TrajectoryError& error) {
-  return {{"num_poses", error.num_judged},
-          {"num_missing", error.num_missing},
-          {"xy_m", json_of(error.xy)},
-          {"z_m", json_of(error.z)},
-          {"translation_m", json_of(error.translation)},
-          {"rotation_deg", json_of(error.rotation_deg)},
-          {"success", {json_of(error, registration::kFineSuccess), json_of(error, registration::kCoarseSuccess)}},
-          {"poses", json_of(error.poses)}};
+Comparison compare_by_time(const Trajectory& estimate, const Trajectory& truth, const EvaluateOptions& options) {
+  auto association = registration::associate_by_time(estimate, truth, options.max_time_difference);
+  if (association.num_unmatched == estimate.size()) {
+    throw IoError::malformed(options.estimate, fmt::format("no time within {} s of one in {}",
+                                                           options.max_time_difference, options.truth.string()));
+  }
+  return {std::move(association.estimate), truth, association.num_unmatched};
 }
 
-ExitCode run(const EvaluateOptions& options, const CommonOptions& common) {
+// A TUM file leaves missing poses out, so that lines tell nothing; in a KITTI file they are all there is.
+Comparison read_poses(const EvaluateOptions& options) {
   const Trajectory estimate = read_trajectory(options.estimate);
-  const Trajectory truth = read_selected_poses(options.truth, options.selection, estimate.size());
-  const TrajectoryError error = registration::evaluate_trajectory(estimate, truth);
-  if (common.json) {
-    print_json(json_of(error));
+  const Trajectory truth = read_trajectory(options.truth);
+  const bool have_times = !estimate.times.empty() && !truth.times.empty();
+  if (have_times) return compare_by_time(estimate, select(truth, options.selection), options);
+  return {estimate, read_selected_poses(options.truth, options.selection, estimate.size())};
+}
+
+void check_truth(const Comparison& poses, const EvaluateOptions& options) {
+  const auto& truth = poses.truth.map_from_scan;
+  if (std::any_of(truth.begin(), truth.end(), [](const auto& pose) { return pose.has_value(); })) return;
+  throw IoError::malformed(options.truth, "all poses are missing, nothing to compare with");
+}
+
+void write_plot(const EvaluateOptions& options, const Comparison& poses) {
+  constexpr std::size_t kLongTitle = 80;
+  registration::TrajectoryPlotOptions plot;
+  plot.title = options.estimate.string() + " against " + options.truth.string();
+  if (plot.title.size() > kLongTitle) {
+    plot.title = options.estimate.filename().string() + " against " + options.truth.filename().string();
+  }
+  write_png(options.plot, registration::plot_trajectory(poses.estimate, poses.truth, plot));
+}
+
+ExitCode run(const EvaluateOptions& options, const CommonOptions&) {
+  check_outputs(options);
+  const Comparison poses = read_poses(options);
+  check_truth(poses, options);
+  Evaluation evaluation = evaluate(poses.estimate, poses.truth);
+  evaluation.num_unmatched = poses.num_unmatched;
+
+  if (!options.plot.empty()) write_plot(options, poses);
+  if (!options.json.empty()) write_json(options.json, json_of(evaluation));
+  if (options.has_json && options.json.empty()) {
+    print_json(json_of(evaluation));
   } else {
-    print_result(text_of(error));
+    print_result(text_of(evaluation));
   }
   return ExitCode::kDone;
 }
@@ -101,6 +131,8 @@ ExitCode run(const EvaluateOptions& options, const CommonOptions& common) {
 Command evaluate_command() {
   return make_command<EvaluateOptions>("evaluate", "Compare estimated poses with the true ones",
                                        "vdbmap evaluate poses.txt truth.txt\n"
+                                       "vdbmap evaluate poses.txt truth.txt --plot evaluation.png --json "
+                                       "evaluation.json\n"
                                        "vdbmap evaluate odd_poses.txt truth.txt --every 2 --offset 1 --json",
                                        add_options, run);
 }
