@@ -9,12 +9,14 @@
 #include <unistd.h>
 
 #include "vdbmap/io/atomic_file.h"
+#include "vdbmap/io/atomic_folder.h"
 
 namespace vdbmap::cli {
 namespace {
 
 void stop_at_once(int signal) {
   remove_unfinished_files();
+  remove_unfinished_folders();
   ::_exit(128 + signal);
 }
 

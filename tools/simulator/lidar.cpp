@@ -1,0 +1,92 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "tools/simulator/lidar.h"
+
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+
+namespace vdbmap::simulator {
+namespace {
+
+using std::numbers::pi;
+
+constexpr double kMountingHeight = 1.73;  // [m] above the ground, as on KITTI's car
+
+double radians(double degrees) { return degrees * pi / 180; }
+
+Eigen::Isometry3d mounting() { return Eigen::Isometry3d(Eigen::Translation3d(0, 0, kMountingHeight)); }
+
+// Velodyne's intensities: diffuse reflectances to 100, retroreflectors above.
+float velodyne_intensity(double reflectivity) {
+  const double value = reflectivity <= 1 ? 100 * reflectivity : 100 + 100 * (reflectivity - 1);
+  return static_cast<float>(std::clamp(std::round(value), 0.0, 255.0));
+}
+
+void append_point(Survey& scan, const SceneView& view, const Eigen::Vector3d& direction, const Echo& echo, double time,
+                  std::uint16_t ring) {
+  // In floats, as a driver gives them; so a PCD file takes 32 bits a coordinate.
+  scan.cloud.positions.emplace_back((echo.range * direction).cast<float>().cast<double>());
+  scan.cloud.intensities.push_back(velodyne_intensity(echo.reflectivity));
+  scan.cloud.times.push_back(time);
+  scan.cloud.rings.push_back(ring);
+  const Triangle& triangle = view.mesh.triangles[echo.triangle];
+  scan.truth.push_back({static_cast<std::uint16_t>(view.materials[triangle.material].label), triangle.object});
+}
+
+}  // namespace
+
+double LidarModel::azimuth(double time) const { return 2 * pi * time / turn_time; }
+
+Eigen::Vector3d LidarModel::direction(const Laser& laser, double time) const {
+  const double angle = azimuth(time);
+  return {std::cos(laser.elevation) * std::cos(angle), -std::cos(laser.elevation) * std::sin(angle),
+          std::sin(laser.elevation)};
+}
+
+double LidarModel::firing_time(int firing, const Laser& laser) const {
+  return turn_time * firing / num_firings + laser.delay;
+}
+
+LidarModel vlp16() {
+  LidarModel lidar{{}, 1800, 0.1, {}, mounting()};
+  // Lasers fire in the order -15, 1, -13, 3, ... degrees, 2.304 us apart (Velodyne 63-9243, section 9.3).
+  for (int i = 0; i < 16; ++i) {
+    const int ring = i % 2 == 0 ? i / 2 : 8 + i / 2;
+    lidar.lasers.push_back({radians(-15 + 2 * ring), 2.304e-6 * i, static_cast<std::uint16_t>(ring)});
+  }
+  lidar.pulse = {
+      .nearest = 0.5, .farthest = 100, .range_noise = 0.03, .divergence = 0.003, .half_range = 55, .random_loss = 0.01};
+  return lidar;
+}
+
+LidarModel hdl64() {
+  LidarModel lidar{{}, 2083, 0.1, {}, mounting()};
+  for (int i = 0; i < 64; ++i) {
+    const double elevation_deg = i < 32 ? 2 - i / 3.0 : -8.83 - (i - 32) * 0.5;
+    lidar.lasers.push_back({radians(elevation_deg), 0.7e-6 * i, static_cast<std::uint16_t>(63 - i)});
+  }
+  lidar.pulse = {
+      .nearest = 0.9, .farthest = 80, .range_noise = 0.02, .divergence = 0.002, .half_range = 60, .random_loss = 0.01};
+  return lidar;
+}
+
+Survey scan_turn(const SceneView& view, const Drive& drive, const LidarModel& lidar, double start_time,
+                 std::uint64_t seed) {
+  Survey scan;
+  for (int firing = 0; firing < lidar.num_firings; ++firing) {
+    for (std::size_t i = 0; i < lidar.lasers.size(); ++i) {
+      const Laser& laser = lidar.lasers[i];
+      const double since_start = lidar.firing_time(firing, laser);
+      const Eigen::Isometry3d scene_from_scanner =
+          drive.scene_from_vehicle(start_time + since_start) * lidar.vehicle_from_scanner;
+      const Eigen::Vector3d direction = lidar.direction(laser, since_start);
+      RayRandom random(hash(seed, static_cast<std::uint64_t>(firing) * lidar.lasers.size() + i));
+      const auto echo =
+          measure(view, lidar.pulse, scene_from_scanner.translation(), scene_from_scanner.linear() * direction, random);
+      if (echo) append_point(scan, view, direction, *echo, start_time + since_start, laser.ring);
+    }
+  }
+  return scan;
+}
+
+}  // namespace vdbmap::simulator

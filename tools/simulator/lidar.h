@@ -1,0 +1,50 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#pragma once
+
+#include <cstdint>
+#include <vector>
+
+#include "tools/simulator/drive.h"
+#include "tools/simulator/pulse.h"
+#include "tools/simulator/survey.h"
+
+namespace vdbmap::simulator {
+
+/// One laser of a turning scanner.
+struct Laser {
+  double elevation;    ///< [rad]
+  double delay;        ///< [s] after the first laser of the firing
+  std::uint16_t ring;  ///< counted from the lowest
+};
+
+/// A scanner that turns about its vertical, clockwise seen from above, from x on. Frame: x forward, y left, z up.
+struct LidarModel {
+  std::vector<Laser> lasers;  ///< in the order of firing
+  int num_firings;            ///< in a turn
+  double turn_time;           ///< [s]
+  PulseModel pulse;
+  Eigen::Isometry3d vehicle_from_scanner;
+
+  /// Angle [rad], clockwise from x, `time` [s] after the turn began.
+  double azimuth(double time) const;
+
+  /// Where the laser looks [scanner frame] when it fires `time` [s] after the turn began.
+  Eigen::Vector3d direction(const Laser& laser, double time) const;
+
+  /// When a laser fires [s after the turn began].
+  double firing_time(int firing, const Laser& laser) const;
+};
+
+/// Velodyne VLP-16: 16 lasers from -15 to +15 degrees, 1800 firings a turn, 10 Hz, 3 cm of noise, 100 m.
+LidarModel vlp16();
+
+/// Velodyne HDL-64E: 32 lasers from +2 to -8.33 degrees a third of a degree apart, 32 down to -24.33 degrees half a
+/// degree apart; 10 Hz, 2 cm of noise, 80 m of KITTI's drives.
+LidarModel hdl64();
+
+/// One turn that begins at `start_time` [s] while the vehicle drives: points in the scanner's frame at the time of
+/// each, in the order of firing, with intensities (0..100 diffuse, to 255 retroreflectors), times and rings.
+Survey scan_turn(const SceneView& view, const Drive& drive, const LidarModel& lidar, double start_time,
+                 std::uint64_t seed);
+
+}  // namespace vdbmap::simulator

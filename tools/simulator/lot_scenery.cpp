@@ -1,0 +1,143 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "tools/simulator/lot_scenery.h"
+
+#include <algorithm>
+#include <numbers>
+
+#include "tools/simulator/furniture.h"
+#include "tools/simulator/house.h"
+
+namespace vdbmap::simulator {
+namespace {
+
+constexpr double kGateGap = 1.3;  // [m] that a garden's border leaves open before the door
+
+// Draws one lot; its parts share so much that they are one object.
+class LotPainter {
+ public:
+  LotPainter(World& world, Mesh& mesh, const StreetLayout& layout, const SideLayout& side, const Lot& lot,
+             std::vector<Tree>& trees)
+      : world_(world),
+        mesh_(mesh),
+        layout_(layout),
+        side_(side),
+        lot_(lot),
+        trees_(trees),
+        random_(hash(lot.seed, 7)),
+        lot_frame_(layout.place_lot(side, lot, side.facade_offset())),
+        border_frame_(layout.place_lot(side, lot, side.pavement_offset() + 0.05)) {}
+
+  void draw() {
+    if (lot_.kind == LotKind::kHouse) draw_house();
+    if (lot_.kind == LotKind::kDriveway) draw_driveway();
+    if (lot_.kind == LotKind::kSideStreet) draw_side_street();
+  }
+
+ private:
+  const StandardMaterials& materials() const { return world_.standard(); }
+
+  Brush object(const char* kind, const Eigen::Isometry3d& frame, MaterialId material) {
+    return world_.add_object(mesh_, {kind, {}}, frame, material);
+  }
+
+  static Eigen::Isometry3d moved(const Eigen::Isometry3d& frame, double x, double y, double yaw = 0) {
+    return frame * Eigen::Translation3d(x, y, 0) * Eigen::AngleAxisd(yaw, Eigen::Vector3d::UnitZ());
+  }
+
+  void add_tree(const Eigen::Isometry3d& frame, double radius) {
+    Tree tree = make_tree(frame, radius, random_);
+    tree.leaves = materials().leaves;
+    tree.object = world_.add_object({"tree", frame.translation()});
+    add_wood(mesh_, tree, materials());
+    trees_.push_back(tree);
+  }
+
+  void draw_house() {
+    const HouseType& type = side_.house_types[lot_.house_type];
+    add_house(world_, mesh_, {moved(lot_frame_, 0, type.stand_back), type, side_.housing, lot_.seed});
+    if (side_.garden_depth > 0) draw_front_garden(type);
+    if (random_.chance(0.45)) {
+      add_tree(moved(lot_frame_, random_.uniform(0, type.width), type.depth + random_.uniform(4, 12)),
+               random_.uniform(2, 3.5));
+    }
+  }
+
+  void draw_front_garden(const HouseType& type) {
+    const double door = type.width * (type.door_axis + 0.5) / type.num_axes;
+    draw_border(0, door - kGateGap / 2);
+    draw_border(door + kGateGap / 2, type.width);
+    const std::size_t num_bushes = 1 + random_.index(4);
+    for (std::size_t i = 0; i < num_bushes; ++i) {
+      const double x = random_.uniform(0.6, type.width - 0.6);
+      const double y = random_.uniform(1.0, side_.garden_depth - 0.6);
+      if (std::abs(x - door) < 1.0) continue;
+      add_bush(object("bush", moved(border_frame_, x, y), materials().leaves), random_.uniform(0.35, 0.8), random_);
+    }
+    const double tree = door > type.width / 2 ? 0.2 * type.width : 0.8 * type.width;
+    if (random_.chance(0.22)) add_tree(moved(border_frame_, tree, side_.garden_depth * 0.5), random_.uniform(1.2, 2));
+  }
+
+  // Hedge, fence or wall between pavement and garden; neighbours of one type have much the same.
+  void draw_border(double from, double to) {
+    if (to - from < 0.4) return;
+    const double choice = random_.uniform(0, 1) * 0.5 + 0.125 * static_cast<double>(lot_.house_type);
+    const Eigen::Isometry3d frame = moved(border_frame_, from, 0);
+    if (choice < 0.4) {
+      const Eigen::Vector3d size(to - from, random_.uniform(0.45, 0.7), random_.uniform(0.8, 1.7));
+      add_hedge(object("hedge", frame, materials().hedge), size, random_);
+    } else if (choice < 0.62) {
+      const bool is_wood = random_.chance(0.5);
+      add_fence(object("fence", frame, is_wood ? materials().wood : materials().metal_fence), to - from,
+                random_.uniform(0.8, 1.2), is_wood ? 0.11 : 0.13);
+    } else if (choice < 0.8) {
+      add_box(object("wall", frame, materials().brick_wall), {0, 0, -0.3},
+              {to - from, 0.24, random_.uniform(0.4, 0.9)});
+    }
+  }
+
+  void draw_driveway() {
+    const double width = lot_.along.length();
+    if (side_.housing == Housing::kBlock) {
+      add_fence(object("gate", lot_frame_, materials().metal_fence), width, 2.1, 0.13);
+    } else if (random_.chance(0.75)) {
+      const MaterialId walls = random_.chance(0.5) ? materials().stone : materials().door;
+      const Eigen::Vector3d size(width - 0.5, random_.uniform(4, 6), random_.uniform(2.2, 2.7));
+      const Brush shed = object("shed", moved(lot_frame_, 0.25, random_.uniform(2, 7)), walls);
+      add_shed(shed, size, materials().window_frame, materials().dark_roof);
+    }
+    add_tree(moved(lot_frame_, width / 2, random_.uniform(16, 26)), random_.uniform(2.5, 3.5));
+  }
+
+  // Two houses on each side of it, and a tree where it ends.
+  void draw_side_street() {
+    const double width = lot_.along.length();
+    const HouseType& type = side_.house_types.front();
+    double y = 13;
+    for (int i = 0; i < 3; ++i, y += type.width) {
+      const Eigen::Isometry3d right = moved(lot_frame_, width + 1.8, y + type.width, -std::numbers::pi / 2);
+      const Eigen::Isometry3d left = moved(lot_frame_, -1.8, y, std::numbers::pi / 2);
+      add_house(world_, mesh_, {right, type, side_.housing, random_.seed()});
+      add_house(world_, mesh_, {left, type, side_.housing, random_.seed()});
+    }
+    add_tree(moved(lot_frame_, width / 2, y + 6), 3.5);
+  }
+
+  World& world_;
+  Mesh& mesh_;
+  const StreetLayout& layout_;
+  const SideLayout& side_;
+  const Lot& lot_;
+  std::vector<Tree>& trees_;
+  Random random_;
+  Eigen::Isometry3d lot_frame_;
+  Eigen::Isometry3d border_frame_;
+};
+
+}  // namespace
+
+void add_lot(World& world, Mesh& mesh, const StreetLayout& layout, const SideLayout& side, const Lot& lot,
+             std::vector<Tree>& trees) {
+  LotPainter(world, mesh, layout, side, lot, trees).draw();
+}
+
+}  // namespace vdbmap::simulator

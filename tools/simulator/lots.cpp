@@ -1,0 +1,70 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "tools/simulator/lots.h"
+
+#include <algorithm>
+
+namespace vdbmap::simulator {
+namespace {
+
+constexpr double kSideStreetWidth = 8.5;              // [m]
+constexpr double kShortestStreetWithSideStreet = 80;  // [m]
+
+std::size_t row_length(Housing housing, Random& random) {
+  if (housing == Housing::kTerraced) return 3 + random.index(3);
+  return housing == Housing::kBlock ? 2 + random.index(3) : 1;
+}
+
+// Where a side street begins; beyond the end where there is none.
+double side_street_begin(const SideLayout& side, const Interval& stretch, double street_length, Random& random) {
+  const double share = side.sign > 0 ? random.uniform(0.2, 0.45) : random.uniform(0.55, 0.8);
+  return street_length < kShortestStreetWithSideStreet ? stretch.end + 1 : share * street_length;
+}
+
+class LotRow {
+ public:
+  LotRow(const SideLayout& side, const Interval& stretch, double side_street, Random& random)
+      : side_(side), stretch_(stretch), side_street_(side_street), random_(random), station_(stretch.begin) {}
+
+  std::vector<Lot> make() {
+    while (station_ < stretch_.end) {
+      if (station_ >= side_street_) {
+        append(LotKind::kSideStreet, kSideStreetWidth, 0);
+        side_street_ = stretch_.end + 1;
+      }
+      append_row();
+      append(LotKind::kDriveway, random_.uniform(3.0, side_.housing == Housing::kDetached ? 4.8 : 3.6), 0);
+    }
+    return lots_;
+  }
+
+ private:
+  // Houses of one type, up to the side street.
+  void append_row() {
+    const std::size_t type = random_.index(side_.house_types.size());
+    const std::size_t count = row_length(side_.housing, random_);
+    for (std::size_t i = 0; i < count && station_ < std::min(side_street_, stretch_.end); ++i) {
+      append(LotKind::kHouse, side_.house_types[type].width, type);
+    }
+  }
+
+  void append(LotKind kind, double length, std::size_t type) {
+    lots_.push_back({kind, {station_, station_ + length}, type, random_.seed()});
+    station_ += length;
+  }
+
+  const SideLayout& side_;
+  Interval stretch_;
+  double side_street_;
+  Random& random_;
+  double station_;
+  std::vector<Lot> lots_;
+};
+
+}  // namespace
+
+std::vector<Lot> make_lots(const SideLayout& side, const Interval& stretch, double street_length, Random& random) {
+  const double side_street = side_street_begin(side, stretch, street_length, random);
+  return LotRow(side, stretch, side_street, random).make();
+}
+
+}  // namespace vdbmap::simulator

@@ -1,0 +1,43 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#pragma once
+
+#include <cstddef>
+#include <optional>
+#include <vector>
+
+#include "tools/simulator/street_layout.h"
+#include "tools/simulator/vehicle_shape.h"
+#include "tools/simulator/world.h"
+
+namespace vdbmap::simulator {
+
+/// A place for one car.
+struct ParkingSpace {
+  std::size_t side;  ///< of the layout
+  double station;    ///< [m] of its middle
+  double distance;   ///< [m] of its middle from the axis
+  double yaw;        ///< [rad] of a car that stands in it, against the direction of the stations
+  double length;     ///< [m]
+  double width;      ///< [m]
+};
+
+/// A car that stands in a space for some epochs.
+struct ParkedVehicle {
+  ObjectId object;
+  VehicleShape shape;
+  MaterialId paint;
+  Eigen::Isometry3d scene_from_vehicle;  ///< x forward, y left, wheels on z = 0
+  std::size_t space;
+};
+
+/// Spaces and, for every epoch, the vehicle that stands in each, as an index of `vehicles`.
+struct Parking {
+  std::vector<ParkingSpace> spaces;
+  std::vector<ParkedVehicle> vehicles;
+  std::vector<std::vector<std::optional<std::size_t>>> vehicle_in_space;  ///< [epoch][space]
+};
+
+/// The spaces between driveways and side streets, and who parks there.
+Parking make_parking(World& world, const StreetLayout& layout, const StreetOptions& options);
+
+}  // namespace vdbmap::simulator

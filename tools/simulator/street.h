@@ -1,0 +1,34 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#pragma once
+
+#include <vector>
+
+#include "tools/simulator/mesh.h"
+#include "tools/simulator/parking.h"
+#include "tools/simulator/street_layout.h"
+#include "tools/simulator/vegetation.h"
+#include "tools/simulator/world.h"
+
+namespace vdbmap::simulator {
+
+/// A street with all its epochs.
+struct Street {
+  StreetOptions options;
+  StreetLayout layout;
+  World world;
+  std::vector<Tree> trees;
+  Parking parking;
+  Mesh lasting;                ///< what is the same in every epoch
+  std::vector<Mesh> changing;  ///< what is not, by epoch: vehicles, people, bicycles, bins, crowns
+
+  /// All that stands in the street in an epoch.
+  Mesh mesh(int epoch) const;
+
+  /// The vehicles of an epoch, in the order of their spaces.
+  std::vector<const ParkedVehicle*> vehicles(int epoch) const;
+};
+
+/// Plans and draws a street. Throws std::invalid_argument for bad options.
+Street make_street(const StreetOptions& options);
+
+}  // namespace vdbmap::simulator

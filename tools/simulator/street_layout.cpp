@@ -1,0 +1,113 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "tools/simulator/street_layout.h"
+
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+
+#include "tools/simulator/lots.h"
+
+namespace vdbmap::simulator {
+namespace {
+
+constexpr double kCrossSlope = 0.025;     // of the carriageway, from its crown down to the gutter
+constexpr double kKerbHeight = 0.12;      // [m]
+constexpr double kPavementSlope = 0.02;   // up from the kerb
+constexpr double kSlopedWidth = 8;        // [m] behind the kerb; level from there on
+constexpr double kRoadRoughness = 0.003;  // [m]
+constexpr std::size_t kHouseTypes = 4;    // on a side
+constexpr double kRoughness = 0.006;      // [m] of everything else
+
+// Waves of a few metres, without a period shorter than the ground's triangles.
+double bumps(double station, double offset) {
+  return (std::sin(1.31 * station + 0.7 * offset) + std::sin(0.83 * station - 1.1 * offset + 1.3) +
+          std::sin(0.37 * station + 0.29 * offset + 2.1)) /
+         3;
+}
+
+ParkingKind choose_parking(Random& random, bool may_be_empty) {
+  const double choice = random.uniform(0, 1);
+  if (choice < 0.45) return ParkingKind::kParallel;
+  if (choice < 0.68) return ParkingKind::kHalfOnPavement;
+  if (choice < 0.78) return ParkingKind::kOnPavement;
+  if (choice < 0.92 || !may_be_empty) return ParkingKind::kAngled;
+  return ParkingKind::kNone;
+}
+
+Housing choose_housing(Random& random) {
+  const double choice = random.uniform(0, 1);
+  if (choice < 0.4) return Housing::kTerraced;
+  return choice < 0.65 ? Housing::kBlock : Housing::kDetached;
+}
+
+double parking_width(ParkingKind kind) {
+  if (kind == ParkingKind::kParallel) return 2.1;
+  return kind == ParkingKind::kAngled ? 5.0 : 0.0;
+}
+
+double pavement_width(ParkingKind kind, Random& random) {
+  const double for_people = random.uniform(1.9, 2.6);
+  if (kind == ParkingKind::kHalfOnPavement) return for_people + 1.0;
+  return kind == ParkingKind::kOnPavement ? for_people + 2.2 : for_people;
+}
+
+SideLayout make_side(double sign, bool may_be_empty, Random& random) {
+  SideLayout side;
+  side.sign = sign;
+  side.parking = choose_parking(random, may_be_empty);
+  side.housing = choose_housing(random);
+  const bool narrows = side.parking == ParkingKind::kHalfOnPavement;
+  side.lane_width = random.uniform(2.7, 3.1) + (narrows ? 1.1 : 0.0);
+  side.parking_width = parking_width(side.parking);
+  side.pavement_width = pavement_width(side.parking, random);
+  side.house_types = make_house_types(side.housing, kHouseTypes, random);
+  side.garden_depth = side.housing == Housing::kBlock ? 0.0 : random.uniform(2.6, 4.5);
+  return side;
+}
+
+}  // namespace
+
+double StreetLayout::ground_height(double station, double offset) const {
+  const SideLayout& side = side_of(offset);
+  const double distance = std::abs(offset);
+  const double kerb = side.kerb_offset();
+  double height = axis.height(station) - kCrossSlope * std::min(distance, kerb);
+  height += (distance > kerb ? kRoughness : kRoadRoughness) * bumps(station, offset);
+  if (distance > kerb) {
+    const double sloped = std::min(distance - kerb, kSlopedWidth);
+    height += side.kerb_share(station) * (kKerbHeight + kPavementSlope * sloped);
+  }
+  return height;
+}
+
+Eigen::Isometry3d StreetLayout::place(double station, double offset, double yaw) const {
+  const Eigen::Vector2d point = axis.point(station, offset);
+  Eigen::Isometry3d frame(Eigen::AngleAxisd(axis.heading_at(station) + yaw, Eigen::Vector3d::UnitZ()));
+  frame.translation() << point, ground_height(station, offset);
+  return frame;
+}
+
+Eigen::Isometry3d StreetLayout::place_on_side(const SideLayout& side, double station, double distance) const {
+  return place(station, side.sign * distance, side.sign > 0 ? 0 : std::numbers::pi);
+}
+
+Eigen::Isometry3d StreetLayout::place_lot(const SideLayout& side, const Lot& lot, double distance) const {
+  Eigen::Isometry3d frame = place_on_side(side, side.sign > 0 ? lot.along.begin : lot.along.end, distance);
+  frame.translation().z() = ground_height(lot.along.middle(), side.sign * distance);
+  return frame;
+}
+
+StreetLayout make_layout(const StreetOptions& options) {
+  options.check();
+  Random random(hash(options.seed, 1));
+  StreetLayout layout;
+  layout.axis = make_axis(random);
+  layout.length = options.length;
+  layout.sides = {make_side(+1, true, random), make_side(-1, false, random)};
+  for (SideLayout& side : layout.sides) {
+    side.lots = make_lots(side, {layout.begin(), layout.end()}, layout.length, random);
+  }
+  return layout;
+}
+
+}  // namespace vdbmap::simulator

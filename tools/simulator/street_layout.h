@@ -1,0 +1,46 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#pragma once
+
+#include <array>
+
+#include <Eigen/Geometry>
+
+#include "tools/simulator/street_axis.h"
+#include "tools/simulator/street_options.h"
+#include "tools/simulator/street_side.h"
+
+namespace vdbmap::simulator {
+
+/// [m] the houses go on before the first and after the last station, so that nobody looks into the void.
+inline constexpr double kStreetMargin = 60;
+
+/// The ground plan: everything that stays, without the things that stand on it.
+struct StreetLayout {
+  StreetAxis axis;
+  double length;                    ///< [m] cars park at stations 0 to `length`
+  std::array<SideLayout, 2> sides;  ///< left, right
+
+  double begin() const { return -kStreetMargin; }
+  double end() const { return length + kStreetMargin; }
+
+  /// The side on which an offset [m, left positive] lies.
+  const SideLayout& side_of(double offset) const { return offset >= 0 ? sides[0] : sides[1]; }
+
+  /// Height [m, scene frame] of the ground; at the kerb's offset that of the road.
+  double ground_height(double station, double offset) const;
+
+  /// A frame on the ground: x along the street turned by `yaw` [rad], z up.
+  Eigen::Isometry3d place(double station, double offset, double yaw = 0) const;
+
+  /// A frame on the ground beside the street: x along it, y away from it; on the right x runs against the stations.
+  Eigen::Isometry3d place_on_side(const SideLayout& side, double station, double distance) const;
+
+  /// The frame before a lot, `distance` [m] from the axis: x along its front, from 0 to the lot's length, y away from
+  /// the street.
+  Eigen::Isometry3d place_lot(const SideLayout& side, const Lot& lot, double distance) const;
+};
+
+/// Plans a street.
+StreetLayout make_layout(const StreetOptions& options);
+
+}  // namespace vdbmap::simulator

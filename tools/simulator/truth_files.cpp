@@ -1,0 +1,124 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "tools/simulator/truth_files.h"
+
+#include <array>
+#include <cmath>
+#include <iterator>
+#include <string>
+
+#include <nlohmann/json.hpp>
+#include <spdlog/fmt/fmt.h>
+
+#include "vdbmap/io/atomic_file.h"
+
+namespace vdbmap::simulator {
+namespace {
+
+using Json = nlohmann::ordered_json;
+
+// Coordinates to a tenth of a millimetre: 17 digits would only show how doubles round.
+double rounded(double value) { return std::round(value * 1e4) / 1e4; }
+
+std::string name_of(ParkingKind kind) {
+  constexpr std::array<const char*, 5> kNames = {"none", "parallel", "half on pavement", "on pavement", "angled"};
+  return kNames[static_cast<std::size_t>(kind)];
+}
+
+Json json_of_outline(const Street& street, const ParkingSpace& space) {
+  Json ring = Json::array();
+  for (const Eigen::Vector3d& corner : outline_of(street, space)) {
+    ring.push_back({rounded(corner.x()), rounded(corner.y()), rounded(corner.z())});
+  }
+  ring.push_back(ring.front());  // closed, as RFC 7946 wants it
+  return {{"type", "Polygon"}, {"coordinates", Json::array({ring})}};
+}
+
+Json json_of_space(const Street& street, std::size_t index) {
+  const ParkingSpace& space = street.parking.spaces[index];
+  const SideLayout& side = street.layout.sides[space.side];
+  Json states = Json::array();
+  Json vehicles = Json::array();
+  for (const auto& epoch : street.parking.vehicle_in_space) {
+    const auto& vehicle = epoch[index];
+    states.push_back(vehicle ? "occupied" : "vacant");
+    vehicles.push_back(vehicle ? Json(street.parking.vehicles[*vehicle].object) : Json());
+  }
+  const double heading = street.layout.axis.heading_at(space.station) + space.yaw;
+  return {{"type", "Feature"},
+          {"geometry", json_of_outline(street, space)},
+          {"properties",
+           {{"id", index},
+            {"side", side.sign > 0 ? "left" : "right"},
+            {"kind", name_of(side.parking)},
+            {"length", space.length},
+            {"width", space.width},
+            {"heading", std::remainder(heading, 2 * EIGEN_PI)},
+            {"states", states},
+            {"vehicles", vehicles}}}};
+}
+
+}  // namespace
+
+VehicleBox box_of(const Street& street, const ParkedVehicle& vehicle) {
+  const Eigen::Isometry3d& frame = vehicle.scene_from_vehicle;
+  const Eigen::Matrix3d& rotation = frame.linear();
+  VehicleBox box;
+  box.center = street.layout.axis.origin + frame * Eigen::Vector3d(0, 0, vehicle.shape.height / 2);
+  box.size = {vehicle.shape.length, vehicle.shape.width, vehicle.shape.height};
+  box.heading = std::atan2(rotation(1, 0), rotation(0, 0));
+  box.pitch = -std::asin(rotation(2, 0));
+  box.roll = std::atan2(rotation(2, 1), rotation(2, 2));
+  return box;
+}
+
+std::vector<Eigen::Vector3d> outline_of(const Street& street, const ParkingSpace& space) {
+  const double offset = street.layout.sides[space.side].sign * space.distance;
+  const Eigen::Isometry3d frame = street.layout.place(space.station, offset, space.yaw);
+  const double x = space.length / 2;
+  const double y = space.width / 2;
+  std::vector<Eigen::Vector3d> corners;
+  for (const auto& [along, aside] : {std::pair(x, y), std::pair(-x, y), std::pair(-x, -y), std::pair(x, -y)}) {
+    corners.emplace_back(street.layout.axis.origin + frame * Eigen::Vector3d(along, aside, 0));
+  }
+  return corners;
+}
+
+void write_vehicles(const std::filesystem::path& path, const Street& street, int epoch) {
+  std::string text = "id,body,x,y,z,length,width,height,heading,pitch,roll,space\n";
+  for (const ParkedVehicle* vehicle : street.vehicles(epoch)) {
+    const VehicleBox box = box_of(street, *vehicle);
+    fmt::format_to(std::back_inserter(text),
+                   "{},{},{:.4f},{:.4f},{:.4f},{:.4f},{:.4f},{:.4f},{:.6f},{:.6f},{:.6f},{}\n", vehicle->object,
+                   name_of(vehicle->shape.body), box.center.x(), box.center.y(), box.center.z(), box.size.x(),
+                   box.size.y(), box.size.z(), box.heading, box.pitch, box.roll, vehicle->space);
+  }
+  write_file(path, text);
+}
+
+void write_spaces(const std::filesystem::path& path, const Street& street) {
+  Json features = Json::array();
+  for (std::size_t i = 0; i < street.parking.spaces.size(); ++i) features.push_back(json_of_space(street, i));
+  // The member that GeoJSON had for other systems than WGS 84 before RFC 7946; GDAL and QGIS still read it.
+  const Json crs = {{"type", "name"}, {"properties", {{"name", "urn:ogc:def:crs:EPSG::25832"}}}};
+  const Json collection = {{"type", "FeatureCollection"}, {"crs", crs}, {"features", features}};
+  write_file(path, collection.dump(1) + "\n");
+}
+
+std::size_t write_changes(const std::filesystem::path& path, const Street& street) {
+  std::size_t count = 0;
+  AtomicFile file(path);
+  file.write("from_epoch,to_epoch,x,y,z,change,label,object\n");
+  const Eigen::Vector3d anchor = change_anchor(street);
+  for (int epoch = 0; epoch + 1 < street.options.num_epochs; ++epoch) {
+    for (const ChangedVoxel& voxel : changed_voxels(street, epoch)) {
+      const Eigen::Vector3d center = anchor + center_of_voxel(voxel.voxel, kChangeVoxelSize);
+      file.write(fmt::format("{},{},{:.2f},{:.2f},{:.2f},{},{},{}\n", epoch, epoch + 1, center.x(), center.y(),
+                             center.z(), voxel.has_appeared ? "appeared" : "vanished", voxel.label, voxel.object));
+      ++count;
+    }
+  }
+  file.commit();
+  return count;
+}
+
+}  // namespace vdbmap::simulator
