@@ -15,14 +15,15 @@ struct RangeLimits {
   double max = 100.0;
 };
 
+/// The positions in the scan of the points that sample_points() returns. Throws std::invalid_argument for 2^32 points
+/// or more.
+std::vector<std::uint32_t> sample_indices(std::span<const Eigen::Vector3d> points_in_scan, double spacing,
+                                          const RangeLimits& limits);
+
 /// The first point of every cube of edge `spacing` [m] among the points within the limits of the scan's origin, in
 /// their order: an even cover of the surfaces where a LiDAR is dense near by and sparse far away.
 std::vector<Eigen::Vector3d> sample_points(std::span<const Eigen::Vector3d> points_in_scan, double spacing,
                                            const RangeLimits& limits);
-
-/// The positions of these points in the scan. Throws std::invalid_argument for 2^32 points or more.
-std::vector<std::uint32_t> sample_indices(std::span<const Eigen::Vector3d> points_in_scan, double spacing,
-                                          const RangeLimits& limits);
 
 /// A scan ready for alignment: evenly thinned, densely for the finest level, thinly for the coarser ones.
 struct SampledScan {

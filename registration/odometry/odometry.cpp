@@ -182,13 +182,15 @@ void Odometry::finish(const Alignment& alignment, OdometryStep& step) {
       match_covariance(alignment.aligned_points, map_, result.map_from_scan, alignment_options(step.sigma).limits);
   if (covariance) step.covariance = with_axes_of(*covariance, first_from_registered_.linear());
   if (!step.was_refound) threshold_.add_deviation(step.first_from_scan.inverse() * result.map_from_scan);
+  step.jump = (result.map_from_scan.translation() - step.first_from_scan.translation()).norm();
   step.first_from_scan = result.map_from_scan;
   step.previous_from_scan = first_from_registered_.inverse() * result.map_from_scan;
 
   map_.insert(moved(alignment.points, result.map_from_scan));
   map_.forget_far(result.map_from_scan.translation());
   first_from_registered_ = result.map_from_scan;
-  twist_ = twist_of_motion(step.previous_from_scan) / seconds_since_registered_;
+  // A jump says nothing about the speed: how long the gap was is mostly unknown.
+  if (!step.was_refound) twist_ = twist_of_motion(step.previous_from_scan) / seconds_since_registered_;
   seconds_since_registered_ = 0;
   if (step.has_time) step.motion.twist = twist_;
 }

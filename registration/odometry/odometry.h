@@ -54,7 +54,8 @@ struct OdometryStep {
   double inlier_share = 0;     ///< of the points aligned: within half a voxel of the map
   std::size_t num_points = 0;  ///< aligned
   int num_iterations = 0;
-  bool was_refound = false;  ///< the scan lay far from the prediction and was found by a wider search
+  bool was_refound = false;  ///< the scan lay far from where its motion led to; a wider search found it
+  double jump = 0;           ///< [m] between where the motion led to and where the scan was found
 
   bool registered() const { return reason.empty(); }
 };

@@ -10,8 +10,9 @@
 namespace vdbmap::registration {
 namespace {
 
-constexpr std::size_t kMaxScoredPoints = 400;  // enough to tell places apart
+constexpr std::size_t kMaxScoredPoints = 250;  // enough to tell places apart
 constexpr double kNearDistance = 1;            // [m] of a point that speaks for a place
+constexpr int kMaxRoughIterations = 40;        // a place that is right has mostly come to rest by then
 
 struct Candidate {
   Eigen::Isometry3d map_from_scan;
@@ -80,13 +81,15 @@ PointToPointResult search_widely(std::span<const Eigen::Vector3d> points_in_scan
   std::vector<Candidate> places = places_around(map_from_scan_guess, options);
   parallel_for(places.size(), [&](std::size_t i) { places[i].score = score_of(few, map, places[i].map_from_scan); });
 
+  PointToPointOptions rough = alignment;
+  rough.max_iterations = std::min(alignment.max_iterations, kMaxRoughIterations);
   PointToPointResult best;
   best.map_from_scan = map_from_scan_guess;
   for (const Candidate& place : best_of(std::move(places), options)) {
-    const PointToPointResult result = align_points(points_in_scan, map, place.map_from_scan, alignment);
+    const PointToPointResult result = align_points(points_in_scan, map, place.map_from_scan, rough);
     if (result.matches.num_inliers > best.matches.num_inliers) best = result;
   }
-  return best;
+  return align_points(points_in_scan, map, best.map_from_scan, alignment);
 }
 
 }  // namespace vdbmap::registration

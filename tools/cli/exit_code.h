@@ -3,7 +3,7 @@
 
 namespace vdbmap::cli {
 
-/// What the command tells the shell.
+/// What the command tells the shell; 128 plus its number where a signal ended it.
 enum class ExitCode : int {
   kDone = 0,
   kNo = 1,                 ///< the answer is no: not localized, not found, a rule is broken

@@ -14,12 +14,6 @@
 namespace vdbmap::cli {
 namespace {
 
-void stop_at_once(int signal) {
-  remove_unfinished_files();
-  remove_unfinished_folders();
-  ::_exit(128 + signal);
-}
-
 void handle_signals() {
   std::signal(SIGINT, stop_at_once);
   std::signal(SIGTERM, stop_at_once);
@@ -41,6 +35,12 @@ void log_to_stderr() {
 }
 
 }  // namespace
+
+void stop_at_once(int signal) {
+  remove_unfinished_files();
+  remove_unfinished_folders();
+  ::_exit(128 + signal);
+}
 
 void prepare_process() {
   occupy_closed_streams();

@@ -8,6 +8,9 @@ namespace vdbmap::cli {
 /// stderr.
 void prepare_process();
 
+/// Ends the process with 128 plus the signal's number and leaves no unfinished file; safe inside a signal handler.
+[[noreturn]] void stop_at_once(int signal);
+
 /// Log below errors is dropped from here on.
 void silence_log();
 

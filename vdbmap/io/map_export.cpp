@@ -43,16 +43,20 @@ PointFormat export_format(const std::filesystem::path& path) {
   throw std::invalid_argument(path.string() + ": extension is '" + extension + "', expected .ply, .las or .xyz");
 }
 
-void export_points(const std::filesystem::path& path, const VoxelMap& map, const VoxelLevel& level) {
+void write_points(const std::filesystem::path& path, const PointCloud& cloud, const std::optional<int>& epsg) {
   const PointFormat format = export_format(path);
-  const PointCloud cloud = points_of_level(map, level);
   if (format == PointFormat::kPly) {
     write_ply(path, cloud);
   } else if (format == PointFormat::kLas) {
-    write_las(path, cloud, {.epsg = map.frame.epsg});
+    write_las(path, cloud, {.epsg = epsg});
   } else {
     write_xyz(path, cloud);
   }
+}
+
+void export_points(const std::filesystem::path& path, const VoxelMap& map, const VoxelLevel& level) {
+  export_format(path);
+  write_points(path, points_of_level(map, level), map.frame.epsg);
 }
 
 }  // namespace vdbmap

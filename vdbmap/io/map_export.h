@@ -2,6 +2,7 @@
 #pragma once
 
 #include <filesystem>
+#include <optional>
 
 #include "vdbmap/core/point_cloud.h"
 #include "vdbmap/core/voxel_map.h"
@@ -15,6 +16,11 @@ PointCloud points_of_level(const VoxelMap& map, const VoxelLevel& level);
 
 /// The format of a point file to be written: PLY, LAS or XYZ. Throws std::invalid_argument for any other extension.
 PointFormat export_format(const std::filesystem::path& path);
+
+/// Writes a cloud in the format of the extension; LAS with the EPSG code, if any. Throws IoError, and
+/// std::invalid_argument as export_format() and the writers do.
+void write_points(const std::filesystem::path& path, const PointCloud& cloud,
+                  const std::optional<int>& epsg = std::nullopt);
 
 /// Writes points_of_level() in the format of the extension; LAS with the EPSG code. Throws IoError, and
 /// std::invalid_argument as export_format() and write_las() do.
