@@ -45,6 +45,7 @@ struct SequenceScan {
   Evidence evidence;
   std::vector<UnobservableDirection> unobservable;  ///< by this scan alone
   std::string reason;                               ///< empty when found
+  std::string time_problem;  ///< why it was not deskewed although it has time stamps; empty where nothing is wrong
 
   bool found() const { return reason.empty(); }
 };

@@ -1,0 +1,28 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#pragma once
+
+#include <filesystem>
+#include <optional>
+#include <vector>
+
+#include "registration/localize.h"
+#include "registration/localizer.h"
+#include "tools/cli/common_options.h"
+#include "tools/cli/localize_report.h"
+#include "vdbmap/core/voxel_map.h"
+#include "vdbmap/io/scan_sequence.h"
+#include "vdbmap/io/trajectory_file.h"
+
+namespace vdbmap::cli {
+
+/// Each scan from a guess of its own, or, where there is one guess only, from the motion of those before.
+LocalizeReport localize_from_guesses(const std::vector<ScanPlace>& scans, const VoxelMap& map,
+                                     const Trajectory& guesses, const registration::FineOptions& fine,
+                                     const registration::FoundCriteria& criteria, const CommonOptions& common);
+
+/// The whole sequence without a first guess; with the poses of an odometry made before, or our own.
+LocalizeReport localize_without_guess(const std::vector<ScanPlace>& scans, const VoxelMap& map,
+                                      const std::optional<Trajectory>& odometry,
+                                      const registration::LocalizerOptions& options, const CommonOptions& common);
+
+}  // namespace vdbmap::cli

@@ -1,0 +1,52 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#pragma once
+
+#include <cstddef>
+#include <filesystem>
+#include <string>
+#include <vector>
+
+#include <Eigen/Geometry>
+#include <nlohmann/json_fwd.hpp>
+
+#include "registration/localize.h"
+#include "registration/localizer.h"
+#include "vdbmap/io/scan_sequence.h"
+#include "vdbmap/io/trajectory_file.h"
+
+namespace vdbmap::cli {
+
+/// What became of one scan, however it was localized.
+struct LocalizedRow {
+  ScanPlace scan;
+  Eigen::Isometry3d map_from_scan = Eigen::Isometry3d::Identity();  ///< the best known, also if not found
+  registration::Matrix6d covariance = registration::Matrix6d::Zero();
+  double inlier_share = 0;  ///< of the sampled points: within 0.15 m of a plane of the map
+  std::vector<std::string> unobservable;
+  std::string reason;        ///< empty when found
+  std::string time_problem;  ///< why it was not deskewed; empty where nothing is wrong
+
+  bool found() const { return reason.empty(); }
+};
+
+/// What `vdbmap localize` says.
+struct LocalizeReport {
+  std::vector<LocalizedRow> scans;
+  std::vector<registration::SequenceBatch> batches;  ///< of a search without a first guess, else empty
+
+  std::size_t num_found() const;
+
+  /// With a pose for each scan that was found. `times` [s]: one a scan, or empty.
+  Trajectory trajectory(const std::vector<double>& times) const;
+};
+
+LocalizedRow row_of(const ScanPlace& scan, const registration::LocalizedScan& localized);
+LocalizedRow row_of(const ScanPlace& scan, const registration::SequenceScan& localized);
+
+/// One warning for each scan and batch that was not found, and for what the map does not determine.
+void warn(const LocalizeReport& report);
+
+/// Everything, for --json and --report; `output` is the file of poses.
+nlohmann::ordered_json json_of(const LocalizeReport& report, const std::filesystem::path& output);
+
+}  // namespace vdbmap::cli
