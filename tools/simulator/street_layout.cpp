@@ -61,7 +61,8 @@ double garden_depth(Housing housing, Random& random) {
 std::vector<Interval> make_islands(const SideLayout& side, double street_length, Random& random) {
   std::vector<Interval> islands;
   if (side.parking_width == 0) return islands;
-  const double spacing = random.uniform(14, 21);
+  // Three or four cars stand between two of them.
+  const double spacing = (random.chance(0.5) ? 17.8 : 23.4) + kIslandLength;
   for (double station = random.uniform(4, spacing); station < street_length; station += spacing) {
     const Interval island = {station, station + kIslandLength};
     if (side.is_plain(island, 1)) islands.push_back(island);
