@@ -22,7 +22,7 @@ namespace vdbmap::simulator {
 namespace {
 
 constexpr int kEpsg = 25832;
-constexpr double kMapperSpeed = 10;         // [m/s]
+constexpr double kMapperSpeed = 13;         // [m/s]
 constexpr double kScanSpeed = 9;            // [m/s] at most
 constexpr double kScannedShare = 0.62;      // of the street's length: its middle, with houses to see on both sides
 constexpr double kDay = 86400;              // [s]

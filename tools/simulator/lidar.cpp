@@ -52,7 +52,7 @@ LidarModel vlp16() {
   // Lasers fire in the order -15, 1, -13, 3, ... degrees, 2.304 us apart (Velodyne 63-9243, section 9.3).
   for (int i = 0; i < 16; ++i) {
     const int ring = i % 2 == 0 ? i / 2 : 8 + i / 2;
-    lidar.lasers.push_back({radians(-15 + 2 * ring), 2.304e-6 * i, static_cast<std::uint16_t>(ring)});
+    lidar.lasers.push_back({radians(-15 + 2 * ring), 2.304e-6 * i, static_cast<std::uint16_t>(ring), 0});
   }
   lidar.pulse = {
       .nearest = 0.5, .farthest = 100, .range_noise = 0.03, .divergence = 0.003, .half_range = 55, .random_loss = 0.01};
@@ -61,12 +61,14 @@ LidarModel vlp16() {
 
 LidarModel hdl64() {
   LidarModel lidar{{}, 2083, 0.1, {}, mounting()};
+  Random biases(64);  // of one scanner, the same in every simulation
   for (int i = 0; i < 64; ++i) {
     const double elevation_deg = i < 32 ? 2 - i / 3.0 : -8.83 - (i - 32) * 0.5;
-    lidar.lasers.push_back({radians(elevation_deg), 0.7e-6 * i, static_cast<std::uint16_t>(63 - i)});
+    lidar.lasers.push_back(
+        {radians(elevation_deg), 0.7e-6 * i, static_cast<std::uint16_t>(63 - i), biases.normal(0, 0.015)});
   }
   lidar.pulse = {
-      .nearest = 0.9, .farthest = 80, .range_noise = 0.02, .divergence = 0.002, .half_range = 60, .random_loss = 0.01};
+      .nearest = 0.9, .farthest = 80, .range_noise = 0.007, .divergence = 0.002, .half_range = 60, .random_loss = 0.05};
   return lidar;
 }
 
@@ -81,8 +83,9 @@ Survey scan_turn(const SceneView& view, const Drive& drive, const LidarModel& li
           drive.scene_from_vehicle(start_time + since_start) * lidar.vehicle_from_scanner;
       const Eigen::Vector3d direction = lidar.direction(laser, since_start);
       RayRandom random(hash(seed, static_cast<std::uint64_t>(firing) * lidar.lasers.size() + i));
-      const auto echo =
+      auto echo =
           measure(view, lidar.pulse, scene_from_scanner.translation(), scene_from_scanner.linear() * direction, random);
+      if (echo) echo->range += laser.range_bias;
       if (echo) append_point(scan, view, direction, *echo, start_time + since_start, laser.ring);
     }
   }

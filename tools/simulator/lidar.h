@@ -12,9 +12,10 @@ namespace vdbmap::simulator {
 
 /// One laser of a turning scanner.
 struct Laser {
-  double elevation;    ///< [rad]
-  double delay;        ///< [s] after the first laser of the firing
-  std::uint16_t ring;  ///< counted from the lowest
+  double elevation;       ///< [rad]
+  double delay;           ///< [s] after the first laser of the firing
+  std::uint16_t ring;     ///< counted from the lowest
+  double range_bias = 0;  ///< [m] that calibration left over
 };
 
 /// A scanner that turns about its vertical, clockwise seen from above, from x on. Frame: x forward, y left, z up.
@@ -39,7 +40,7 @@ struct LidarModel {
 LidarModel vlp16();
 
 /// Velodyne HDL-64E: 32 lasers from +2 to -8.33 degrees a third of a degree apart, 32 down to -24.33 degrees half a
-/// degree apart; 10 Hz, 2 cm of noise, 80 m of KITTI's drives.
+/// degree apart; 10 Hz, 80 m as in KITTI's drives. Its 2 cm are mostly what calibration left of each laser's bias.
 LidarModel hdl64();
 
 /// One turn that begins at `start_time` [s] while the vehicle drives: points in the scanner's frame at the time of

@@ -29,6 +29,7 @@ class LotPainter {
 
   void draw() {
     if (lot_.kind == LotKind::kHouse) draw_house();
+    if (lot_.kind == LotKind::kGap) draw_gap();
     if (lot_.kind == LotKind::kDriveway) draw_driveway();
     if (lot_.kind == LotKind::kSideStreet) draw_side_street();
   }
@@ -44,10 +45,11 @@ class LotPainter {
     return frame * Eigen::Translation3d(x, y, 0) * Eigen::AngleAxisd(yaw, Eigen::Vector3d::UnitZ());
   }
 
-  void add_tree(const Eigen::Isometry3d& frame, double radius) {
-    Tree tree = make_tree(frame, radius, random_);
+  void add_tree(const Eigen::Isometry3d& frame, double radius) { add_tree(make_tree(frame, radius, random_)); }
+
+  void add_tree(Tree tree) {
     tree.leaves = materials().leaves;
-    tree.object = world_.add_object({"tree", frame.translation()});
+    tree.object = world_.add_object({"tree", tree.scene_from_foot.translation()});
     add_wood(mesh_, tree, materials());
     trees_.push_back(tree);
   }
@@ -66,15 +68,20 @@ class LotPainter {
     const double door = type.width * (type.door_axis + 0.5) / type.num_axes;
     draw_border(0, door - kGateGap / 2);
     draw_border(door + kGateGap / 2, type.width);
-    const std::size_t num_bushes = 1 + random_.index(4);
+    const std::size_t num_bushes = 2 + random_.index(5);
     for (std::size_t i = 0; i < num_bushes; ++i) {
       const double x = random_.uniform(0.6, type.width - 0.6);
       const double y = random_.uniform(1.0, side_.garden_depth - 0.6);
       if (std::abs(x - door) < 1.0) continue;
-      add_bush(object("bush", moved(border_frame_, x, y), materials().leaves), random_.uniform(0.35, 0.8), random_);
+      add_bush(object("bush", moved(border_frame_, x, y), materials().leaves), random_.uniform(0.4, 1.1), random_);
     }
-    const double tree = door > type.width / 2 ? 0.2 * type.width : 0.8 * type.width;
-    if (random_.chance(0.22)) add_tree(moved(border_frame_, tree, side_.garden_depth * 0.5), random_.uniform(1.2, 2));
+    const double x = door > type.width / 2 ? 0.2 * type.width : 0.8 * type.width;
+    const Eigen::Isometry3d place = moved(border_frame_, x, side_.garden_depth * 0.5);
+    if (random_.chance(0.35)) {
+      add_tree(make_low_tree(place, random_.uniform(0.9, 1.5), random_));
+    } else if (random_.chance(0.2)) {
+      add_tree(place, random_.uniform(1.2, 2));
+    }
   }
 
   // Hedge, fence or wall between pavement and garden; neighbours of one type have much the same.
@@ -82,10 +89,10 @@ class LotPainter {
     if (to - from < 0.4) return;
     const double choice = random_.uniform(0, 1) * 0.5 + 0.125 * static_cast<double>(lot_.house_type);
     const Eigen::Isometry3d frame = moved(border_frame_, from, 0);
-    if (choice < 0.4) {
-      const Eigen::Vector3d size(to - from, random_.uniform(0.45, 0.7), random_.uniform(0.8, 1.7));
+    if (choice < 0.5) {
+      const Eigen::Vector3d size(to - from, random_.uniform(0.5, 0.9), random_.uniform(0.9, 2.0));
       add_hedge(object("hedge", frame, materials().hedge), size, random_);
-    } else if (choice < 0.62) {
+    } else if (choice < 0.68) {
       const bool is_wood = random_.chance(0.5);
       add_fence(object("fence", frame, is_wood ? materials().wood : materials().metal_fence), to - from,
                 random_.uniform(0.8, 1.2), is_wood ? 0.11 : 0.13);
@@ -93,6 +100,14 @@ class LotPainter {
       add_box(object("wall", frame, materials().brick_wall), {0, 0, -0.3},
               {to - from, 0.24, random_.uniform(0.4, 0.9)});
     }
+  }
+
+  // A fence between the houses, and what grows behind it.
+  void draw_gap() {
+    const double width = lot_.along.length();
+    if (side_.garden_depth > 0) draw_border(0, width);
+    add_fence(object("fence", moved(lot_frame_, 0, 1), materials().wood), width, 1.8, 0.11);
+    add_tree(moved(lot_frame_, width / 2, random_.uniform(14, 22)), random_.uniform(2, 3.5));
   }
 
   void draw_driveway() {

@@ -6,6 +6,7 @@
 namespace vdbmap::simulator {
 namespace {
 
+constexpr double kDrivewayShare = 0.4;                // of the gaps between rows of houses
 constexpr double kSideStreetWidth = 8.5;              // [m]
 constexpr double kShortestStreetWithSideStreet = 80;  // [m]
 
@@ -32,7 +33,7 @@ class LotRow {
         side_street_ = stretch_.end + 1;
       }
       append_row();
-      append(LotKind::kDriveway, random_.uniform(3.0, side_.housing == Housing::kDetached ? 4.8 : 3.6), 0);
+      append_gap();
     }
     return lots_;
   }
@@ -45,6 +46,14 @@ class LotRow {
     for (std::size_t i = 0; i < count && station_ < std::min(side_street_, stretch_.end); ++i) {
       append(LotKind::kHouse, side_.house_types[type].width, type);
     }
+  }
+
+  // Not every gap is wide enough for a car.
+  void append_gap() {
+    const bool has_driveway = random_.chance(kDrivewayShare);
+    const double width = has_driveway ? random_.uniform(3.0, side_.housing == Housing::kDetached ? 4.8 : 3.6)
+                                      : random_.uniform(1.4, 3.0);
+    append(has_driveway ? LotKind::kDriveway : LotKind::kGap, width, 0);
   }
 
   void append(LotKind kind, double length, std::size_t type) {

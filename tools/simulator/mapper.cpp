@@ -12,17 +12,18 @@ namespace {
 using std::numbers::pi;
 
 constexpr double kRoof = 1.55;             // [m] height of the mapper's own car
-constexpr double kHalfRoofLength = 2.1;    // [m]
+constexpr double kRoofRear = -1.95;        // [m] before the middle between the axles
+constexpr double kRoofFront = 1.5;         // [m]
 constexpr double kHalfRoofWidth = 0.8;     // [m]
 constexpr std::size_t kLinesAtOnce = 256;  // kept apart before they are joined
 
-// The scanners look over the edges of the roof.
+// The scanners stand at the rear end of the roof and look backwards over it.
 bool hits_own_roof(const Eigen::Isometry3d& vehicle_from_scanner, const Eigen::Vector3d& direction) {
   const Eigen::Vector3d origin = vehicle_from_scanner.translation();
   const Eigen::Vector3d down = vehicle_from_scanner.linear() * direction;
   if (down.z() >= 0) return false;
   const Eigen::Vector3d at_roof = origin + (kRoof - origin.z()) / down.z() * down;
-  return std::abs(at_roof.x()) < kHalfRoofLength && std::abs(at_roof.y()) < kHalfRoofWidth;
+  return kRoofRear < at_roof.x() && at_roof.x() < kRoofFront && std::abs(at_roof.y()) < kHalfRoofWidth;
 }
 
 void append_point(Survey& survey, const SceneView& view, const Eigen::Vector3d& position, const Rgb16& color,
@@ -73,7 +74,7 @@ MapperModel vmx250() {
   mapper.pulse = {.nearest = 1.0, .farthest = 100, .range_noise = 0.005, .half_range = 130, .random_loss = 0.005};
   for (const std::size_t i : {0, 1}) {
     const double side = i == 0 ? 1 : -1;
-    mapper.vehicle_from_scanner[i] = Eigen::Translation3d(-0.9, side * 0.25, 2.35) *
+    mapper.vehicle_from_scanner[i] = Eigen::Translation3d(-1.95, side * 0.25, 2.35) *
                                      Eigen::AngleAxisd(side * pi / 4, Eigen::Vector3d::UnitZ()) *
                                      Eigen::AngleAxisd(pi / 7, Eigen::Vector3d::UnitY());
   }

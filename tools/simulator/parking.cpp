@@ -42,6 +42,9 @@ double space_yaw(const SideLayout& side) {
 }
 
 bool may_park(const SideLayout& side, const Interval& place) {
+  for (const Interval& island : side.islands) {
+    if (island.meets(place, kFromDriveway)) return false;
+  }
   for (const Lot& lot : side.lots) {
     if (lot.kind == LotKind::kDriveway && lot.along.meets(place, kFromDriveway)) return false;
     if (lot.kind == LotKind::kSideStreet && lot.along.meets(place, kFromSideStreet)) return false;

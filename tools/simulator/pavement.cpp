@@ -28,7 +28,8 @@ class PavementPainter {
     draw_corners();
     draw_lamps();
     draw_signs();
-    draw_trees();
+    draw_islands();
+    if (side_.islands.empty()) draw_trees();
   }
 
  private:
@@ -89,13 +90,28 @@ class PavementPainter {
     const double spacing = random_.uniform(11, 19);
     for (double station = layout_.begin() + random_.uniform(0, 8); station < layout_.end(); station += spacing) {
       const double place = station + random_.uniform(-1, 1);
-      if (!random_.chance(0.85) || !take(place)) continue;
-      Tree tree = make_tree(post(place), random_.uniform(1.7, 2.6), random_);
-      tree.leaves = world_.standard().leaves;
-      tree.object = world_.add_object({"tree", tree.scene_from_foot.translation()});
-      add_wood(mesh_, tree, world_.standard());
-      trees_.push_back(tree);
+      if (random_.chance(0.85) && take(place)) add_tree(post(place));
     }
+  }
+
+  // A tree between parked cars, with shrubs at its foot.
+  void draw_islands() {
+    for (const Interval& island : side_.islands) {
+      const double distance = side_.kerb_offset() - 1.0;
+      add_tree(layout_.place_on_side(side_, island.middle(), distance));
+      for (const double aside : {-0.55, 0.55}) {
+        const Eigen::Isometry3d foot = layout_.place_on_side(side_, island.middle() + aside, distance);
+        add_bush(object("shrub", foot).with(world_.standard().leaves), random_.uniform(0.35, 0.6), random_);
+      }
+    }
+  }
+
+  void add_tree(const Eigen::Isometry3d& foot) {
+    Tree tree = make_tree(foot, random_.uniform(1.7, 2.6), random_);
+    tree.leaves = world_.standard().leaves;
+    tree.object = world_.add_object({"tree", foot.translation()});
+    add_wood(mesh_, tree, world_.standard());
+    trees_.push_back(tree);
   }
 
   World& world_;

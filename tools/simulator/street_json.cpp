@@ -61,7 +61,7 @@ Json json_of_house_type(const HouseType& type) {
 }
 
 Json json_of_lot(const Lot& lot) {
-  constexpr std::array<const char*, 3> kKinds = {"house", "driveway", "side street"};
+  constexpr std::array<const char*, 4> kKinds = {"house", "gap", "driveway", "side street"};
   Json json = {{"kind", kKinds[static_cast<std::size_t>(lot.kind)]},
                {"begin", lot.along.begin},
                {"end", lot.along.end},

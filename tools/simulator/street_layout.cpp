@@ -14,6 +14,7 @@ constexpr double kCrossSlope = 0.025;     // of the carriageway, from its crown 
 constexpr double kKerbHeight = 0.12;      // [m]
 constexpr double kPavementSlope = 0.02;   // up from the kerb
 constexpr double kSlopedWidth = 8;        // [m] behind the kerb; level from there on
+constexpr double kIslandLength = 2.0;     // [m]
 constexpr double kRoadRoughness = 0.003;  // [m]
 constexpr std::size_t kHouseTypes = 4;    // on a side
 constexpr double kRoughness = 0.006;      // [m] of everything else
@@ -36,7 +37,7 @@ ParkingKind choose_parking(Random& random, bool may_be_empty) {
 
 Housing choose_housing(Random& random) {
   const double choice = random.uniform(0, 1);
-  if (choice < 0.4) return Housing::kTerraced;
+  if (choice < 0.45) return Housing::kTerraced;
   return choice < 0.65 ? Housing::kBlock : Housing::kDetached;
 }
 
@@ -51,17 +52,35 @@ double pavement_width(ParkingKind kind, Random& random) {
   return kind == ParkingKind::kOnPavement ? for_people + 2.2 : for_people;
 }
 
+double garden_depth(Housing housing, Random& random) {
+  if (housing != Housing::kBlock) return random.uniform(3.0, 5.5);
+  return random.chance(0.5) ? 0.0 : random.uniform(1.6, 2.6);
+}
+
+// Trees that stand between the cars, every few spaces.
+std::vector<Interval> make_islands(const SideLayout& side, double street_length, Random& random) {
+  std::vector<Interval> islands;
+  if (side.parking_width == 0) return islands;
+  // Three or four cars stand between two of them.
+  const double spacing = (random.chance(0.5) ? 17.8 : 23.4) + kIslandLength;
+  for (double station = random.uniform(4, spacing); station < street_length; station += spacing) {
+    const Interval island = {station, station + kIslandLength};
+    if (side.is_plain(island, 1)) islands.push_back(island);
+  }
+  return islands;
+}
+
 SideLayout make_side(double sign, bool may_be_empty, Random& random) {
   SideLayout side;
   side.sign = sign;
   side.parking = choose_parking(random, may_be_empty);
   side.housing = choose_housing(random);
   const bool narrows = side.parking == ParkingKind::kHalfOnPavement;
-  side.lane_width = random.uniform(2.7, 3.1) + (narrows ? 1.1 : 0.0);
+  side.lane_width = random.uniform(3.1, 3.7) + (narrows ? 1.1 : 0.0);
   side.parking_width = parking_width(side.parking);
   side.pavement_width = pavement_width(side.parking, random);
   side.house_types = make_house_types(side.housing, kHouseTypes, random);
-  side.garden_depth = side.housing == Housing::kBlock ? 0.0 : random.uniform(2.6, 4.5);
+  side.garden_depth = garden_depth(side.housing, random);
   return side;
 }
 
@@ -106,6 +125,7 @@ StreetLayout make_layout(const StreetOptions& options) {
   layout.sides = {make_side(+1, true, random), make_side(-1, false, random)};
   for (SideLayout& side : layout.sides) {
     side.lots = make_lots(side, {layout.begin(), layout.end()}, layout.length, random);
+    side.islands = make_islands(side, layout.length, random);
   }
   return layout;
 }

@@ -10,7 +10,7 @@ struct StreetOptions {
   std::uint64_t seed = 1;  ///< another seed, another street
   double length = 175;     ///< [m] 30..1000
   int num_epochs = 2;      ///< 1..20 days on which the street is visited
-  double occupancy = 0.8;  ///< share of the parking spaces that is taken, 0..1
+  double occupancy = 0.7;  ///< share of the parking spaces that is taken, 0..1
   double turnover = 0.3;   ///< share of the parked cars that is gone by the next epoch, 0..1
 
   /// Throws std::invalid_argument naming the value and what is allowed.

@@ -39,8 +39,10 @@ double SideLayout::kerb_share(double station) const {
 }
 
 bool SideLayout::is_plain(const Interval& stretch, double margin) const {
-  return std::ranges::none_of(
-      lots, [&](const Lot& lot) { return lot.kind != LotKind::kHouse && lot.along.meets(stretch, margin); });
+  return std::ranges::none_of(lots, [&](const Lot& lot) {
+    const bool is_open = lot.kind == LotKind::kDriveway || lot.kind == LotKind::kSideStreet;
+    return is_open && lot.along.meets(stretch, margin);
+  });
 }
 
 }  // namespace vdbmap::simulator

@@ -26,7 +26,7 @@ struct Interval {
 enum class ParkingKind { kNone, kParallel, kHalfOnPavement, kOnPavement, kAngled };
 
 /// What stands on a stretch behind the pavement.
-enum class LotKind { kHouse, kDriveway, kSideStreet };
+enum class LotKind { kHouse, kGap, kDriveway, kSideStreet };
 
 struct Lot {
   LotKind kind;
@@ -46,7 +46,8 @@ struct SideLayout {
   double pavement_width;  ///< [m]
   double garden_depth;    ///< [m] between pavement and houses
   std::vector<HouseType> house_types;
-  std::vector<Lot> lots;  ///< in the order of stations, without gaps
+  std::vector<Lot> lots;          ///< in the order of stations, without gaps
+  std::vector<Interval> islands;  ///< of trees in the parking lane
 
   double kerb_offset() const { return lane_width + parking_width; }
   double pavement_offset() const { return kerb_offset() + pavement_width; }

@@ -11,11 +11,11 @@ namespace {
 using Point = Eigen::Vector3d;
 
 constexpr double kLeafSize = 0.13;  // [m] edge of a leaf: a twig's worth of real ones
-constexpr int kLeavesPerCluster = 42;
+constexpr int kLeavesPerCluster = 60;
 constexpr double kClusterRadius = 0.55;     // [m]
 constexpr double kClustersPerSquare = 1.5;  // clusters by crown radius squared and height [1/m^3]
 constexpr double kShareThatChanges = 0.05;  // of the clusters, from one epoch to the next
-constexpr double kLeavesPerHedgeArea = 70;  // [1/m^2]
+constexpr double kLeavesPerHedgeArea = 90;  // [1/m^2]
 constexpr int kNumBranches = 13;
 
 Point random_direction(Random& random) {
@@ -70,6 +70,12 @@ Tree make_tree(const Eigen::Isometry3d& scene_from_foot, double crown_radius, Ra
   tree.trunk_height = 1.6 + 0.45 * tree.crown_radius + random.uniform(-0.2, 0.5);
   tree.trunk_radius = 0.055 * tree.crown_radius + random.uniform(0.02, 0.08);
   tree.seed = random.seed();
+  return tree;
+}
+
+Tree make_low_tree(const Eigen::Isometry3d& scene_from_foot, double crown_radius, Random& random) {
+  Tree tree = make_tree(scene_from_foot, crown_radius, random);
+  tree.trunk_height = random.uniform(0.5, 1.1);
   return tree;
 }
 

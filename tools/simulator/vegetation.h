@@ -23,6 +23,9 @@ struct Tree {
 /// A tree whose crown has about the radius [m].
 Tree make_tree(const Eigen::Isometry3d& scene_from_foot, double crown_radius, Random& random);
 
+/// A young tree or large shrub whose branches begin at the height of a knee.
+Tree make_low_tree(const Eigen::Isometry3d& scene_from_foot, double crown_radius, Random& random);
+
 /// Adds trunk and branches.
 void add_wood(Mesh& mesh, const Tree& tree, const StandardMaterials& materials);
 
