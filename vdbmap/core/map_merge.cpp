@@ -101,15 +101,10 @@ std::vector<VoxelPair> pair_voxels(const std::vector<VoxelPair>& a, const std::v
   return pairs;
 }
 
-// Whole numbers: exact, so the order of the maps does not matter.
-std::array<std::uint16_t, 3> merged_color(const VoxelRecord& a, const VoxelRecord& b) {
-  const std::uint64_t count = std::uint64_t{a.count} + b.count;
-  std::array<std::uint16_t, 3> merged;
-  for (std::size_t i = 0; i < merged.size(); ++i) {
-    const std::uint64_t sum = std::uint64_t{a.count} * a.color_code[i] + std::uint64_t{b.count} * b.color_code[i];
-    merged[i] = static_cast<std::uint16_t>((sum + count / 2) / count);
-  }
-  return merged;
+Eigen::Vector3d merged_color(const VoxelRecord& a, const VoxelRecord& b) {
+  const double count_a = a.count;
+  const double count_b = b.count;
+  return (count_a * color_of(a) + count_b * color_of(b)) / (count_a + count_b);
 }
 
 // Sums of doubles depend on their order: the smaller record always comes first.
@@ -154,8 +149,8 @@ class LevelMerger {
     const VoxelRecord& a = record_a(pair);
     const VoxelRecord& b = record_b(pair);
     VoxelRecord merged = merged_record(a, b, a_.finest().voxel_size());
-    const bool both_colored = a_.has_color == b_.has_color;
-    merged.color_code = both_colored ? merged_color(a, b) : (a_.has_color ? a : b).color_code;
+    const bool are_alike = a_.has_color == b_.has_color;
+    set_color(merged, are_alike ? merged_color(a, b) : color_of(a_.has_color ? a : b));
     return merged;
   }
 

@@ -8,14 +8,14 @@
 
 #include <openvdb/math/QuantizedUnitVec.h>
 
+#include "vdbmap/core/short_float.h"
+
 namespace vdbmap {
 namespace {
 
-constexpr double kCodeMax = 65535.0;
-
-std::uint16_t code_of_share(double share) {
-  return static_cast<std::uint16_t>(std::lround(std::clamp(share, 0.0, 1.0) * kCodeMax));
-}
+constexpr std::int64_t kFewPoints = 256;
+constexpr std::uint32_t kDroppedBitsOfFewPoints = 16;
+constexpr std::uint32_t kDroppedBits = 8;
 
 }  // namespace
 
@@ -41,7 +41,7 @@ Eigen::Vector3d normal_of(const VoxelRecord& record) {
 
 Eigen::Vector3d color_of(const VoxelRecord& record) {
   const auto& code = record.color_code;
-  return {code[0] / kCodeMax, code[1] / kCodeMax, code[2] / kCodeMax};
+  return {float_of_short(code[0]), float_of_short(code[1]), float_of_short(code[2])};
 }
 
 void set_moments(VoxelRecord& record, const Moments& moments, const VoxelIndex& voxel, double voxel_size) {
@@ -54,14 +54,14 @@ void set_moments(VoxelRecord& record, const Moments& moments, const VoxelIndex& 
   record.count = static_cast<std::uint32_t>(std::min(moments.count, kMaxCount));
 
   const Eigen::Matrix3d covariance = moments.covariance();
-  record.covariance = {round_covariance(covariance(0, 0)), round_covariance(covariance(1, 1)),
-                       round_covariance(covariance(2, 2)), round_covariance(covariance(0, 1)),
-                       round_covariance(covariance(0, 2)), round_covariance(covariance(1, 2))};
+  const auto rounded = [&](int row, int column) { return round_covariance(covariance(row, column), moments.count); };
+  record.covariance = {rounded(0, 0), rounded(1, 1), rounded(2, 2), rounded(0, 1), rounded(0, 2), rounded(1, 2)};
 }
 
-float round_covariance(double value) {
+float round_covariance(double value, std::int64_t count) {
+  const std::uint32_t step = 1u << (count <= kFewPoints ? kDroppedBitsOfFewPoints : kDroppedBits);
   const auto bits = std::bit_cast<std::uint32_t>(static_cast<float>(value));
-  return std::bit_cast<float>((bits + 0x80u) & ~0xffu);
+  return std::bit_cast<float>((bits + step / 2) & ~(step - 1));
 }
 
 void set_normal(VoxelRecord& record, const Eigen::Vector3d& normal) {
@@ -88,7 +88,10 @@ void set_normal(VoxelRecord& record, const Eigen::Vector3d& normal) {
 }
 
 void set_color(VoxelRecord& record, const Eigen::Vector3d& linear_rgb) {
-  for (int channel = 0; channel < 3; ++channel) record.color_code[channel] = code_of_share(linear_rgb[channel]);
+  for (int channel = 0; channel < 3; ++channel) {
+    const double value = linear_rgb[channel];  // may be NaN in a file of another program
+    record.color_code[channel] = value > 0 ? short_of_float(static_cast<float>(std::min(value, 1.0))) : 0;
+  }
 }
 
 }  // namespace vdbmap

@@ -19,7 +19,7 @@ struct VoxelRecord {
   std::array<float, 6> covariance{};          ///< xx yy zz xy xz yz of the sample covariance, divisor n-1 [m^2]
   std::uint32_t count = 0;                    ///< number of points n
   std::array<std::uint16_t, 3> mean_code{};   ///< mean within the voxel in steps of 1/16384 of its edge (6 um at 10 cm)
-  std::array<std::uint16_t, 3> color_code{};  ///< mean colour, linear RGB: 65535 is 1
+  std::array<std::uint16_t, 3> color_code{};  ///< mean colour, linear RGB 0..1 as short floats (short_float.h)
   std::uint16_t normal_code = 0;              ///< OpenVDB's unit-vector code (math/QuantizedUnitVec.h)
   std::uint8_t planarity_code = 0;            ///< planarity of the 3x3x3 neighbourhood: 255 is 1
   std::uint8_t unused = 0;
@@ -53,14 +53,15 @@ Eigen::Vector3d color_of(const VoxelRecord& record);
 /// Stores count, mean and covariance; the mean is clamped to the voxel, the covariance rounded by round_covariance().
 void set_moments(VoxelRecord& record, const Moments& moments, const VoxelIndex& voxel, double voxel_size);
 
-/// A covariance element [m^2] rounded to 16 bits (1.5e-5 of its value at most): far below what the points determine,
-/// and the byte it frees compresses away in the file.
-float round_covariance(double value);
+/// An element [m^2] of the covariance of `count` points, rounded to 8 bits (0.4 % of its value at most) up to 256
+/// points and to 16 bits (1.5e-5) beyond: far below what the points determine, sqrt(2 / n) of a variance, which are 9 %
+/// for 256. The bytes it frees compress away in the file.
+float round_covariance(double value, std::int64_t count);
 
 /// Stores a unit normal, to 0.65 degrees.
 void set_normal(VoxelRecord& record, const Eigen::Vector3d& normal);
 
-/// Stores a linear colour, clamped to 0..1.
+/// Stores a linear colour, clamped to 0..1 (NaN to 0) and rounded to 8 bits: 8-bit sRGB colours stay what they are.
 void set_color(VoxelRecord& record, const Eigen::Vector3d& linear_rgb);
 
 }  // namespace vdbmap

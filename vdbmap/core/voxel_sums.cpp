@@ -43,15 +43,15 @@ VoxelRecord record_of(const VoxelSums& sums, double voxel_size) {
     record.mean_code[axis] = static_cast<std::uint16_t>(share * kMeanSteps);
   }
   if (sums.num_colored > 0) {
-    const auto num_colored = static_cast<double>(sums.num_colored);
-    for (int i = 0; i < 3; ++i) {
-      record.color_code[i] = static_cast<std::uint16_t>(static_cast<double>(sums.color[i]) / num_colored + 0.5);
-    }
+    const double scale = 1 / (65535.0 * static_cast<double>(sums.num_colored));
+    const Eigen::Vector3d sum(static_cast<double>(sums.color[0]), static_cast<double>(sums.color[1]),
+                              static_cast<double>(sums.color[2]));
+    set_color(record, sum * scale);
   }
   if (sums.count > 1) {
     const double quantum = voxel_size / kQuantaPerVoxel;
     const double scale = quantum * quantum / (n * (n - 1));
-    for (int i = 0; i < 6; ++i) record.covariance[i] = round_covariance(centered(sums, i) * scale);
+    for (int i = 0; i < 6; ++i) record.covariance[i] = round_covariance(centered(sums, i) * scale, sums.count);
   }
   return record;
 }

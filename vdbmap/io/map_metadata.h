@@ -9,8 +9,8 @@
 
 namespace vdbmap {
 
-/// Version of our files; 1 is the only one so far.
-inline constexpr std::int32_t kMapFormat = 1;
+/// Version of our files; files of another one are refused. Version 1 had colours of 16-bit fixed point.
+inline constexpr std::int32_t kMapFormat = 2;
 
 /// Anchor, EPSG code, format and creator, as metadata of a file or a grid.
 openvdb::MetaMap metadata_of_frame(const MapFrame& frame);

@@ -11,9 +11,6 @@ using PointLeaf = openvdb::points::PointDataTree::LeafNodeType;
 
 using PositionArray = openvdb::points::TypedAttributeArray<openvdb::Vec3f, openvdb::points::FixedPointCodec<false>>;
 using VectorArray = openvdb::points::TypedAttributeArray<openvdb::Vec3f>;
-using ColorArray =
-    openvdb::points::TypedAttributeArray<openvdb::Vec3f,
-                                         openvdb::points::FixedPointCodec<false, openvdb::points::UnitRange>>;
 using NormalArray = openvdb::points::TypedAttributeArray<openvdb::Vec3f, openvdb::points::UnitVecCodec>;
 using ShareArray =
     openvdb::points::TypedAttributeArray<float, openvdb::points::FixedPointCodec<true, openvdb::points::UnitRange>>;

@@ -117,7 +117,7 @@ class GridReader {
   }
 
   void check_same_attributes(const PointLeaf& leaf) {
-    const OptionalAttributes found{find_array(leaf, "Cd", ColorArray::attributeType()) != nullptr,
+    const OptionalAttributes found{find_array(leaf, "Cd", VectorArray::attributeType()) != nullptr,
                                    find_array(leaf, "intensity", FloatArray::attributeType()) != nullptr,
                                    find_array(leaf, "first_epoch", IntArray::attributeType()) != nullptr,
                                    find_array(leaf, "last_epoch", IntArray::attributeType()) != nullptr};
@@ -126,9 +126,9 @@ class GridReader {
   }
 
   void read_color(const PointLeaf& leaf, std::span<ReadVoxel> voxels) const {
-    const auto color = require<ColorArray>(leaf, "Cd");
+    const auto color = require<VectorArray>(leaf, "Cd");
     for (std::size_t i = 0; i < voxels.size(); ++i) {
-      voxels[i].record.color_code = {color[i].x(), color[i].y(), color[i].z()};
+      set_color(voxels[i].record, {color[i].x(), color[i].y(), color[i].z()});
     }
   }
 

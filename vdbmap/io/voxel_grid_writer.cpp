@@ -30,7 +30,7 @@ points::AttributeSet::Descriptor::Ptr make_descriptor(const VoxelLevel& level, b
   append("count", IntArray::attributeType());
   append("N", NormalArray::attributeType());
   append("planarity", ShareArray::attributeType());
-  if (has_color) append("Cd", ColorArray::attributeType());
+  if (has_color) append("Cd", VectorArray::attributeType());
   if (!level.channels().intensities.empty()) append("intensity", FloatArray::attributeType());
   if (!level.channels().first_epochs.empty()) append("first_epoch", IntArray::attributeType());
   if (!level.channels().last_epochs.empty()) append("last_epoch", IntArray::attributeType());
@@ -102,10 +102,9 @@ void write_records(PointLeaf& leaf, const std::vector<PlacedVoxel>& voxels, std:
 }
 
 void write_colors(PointLeaf& leaf, const std::vector<PlacedVoxel>& voxels, std::span<const VoxelRecord> records) {
-  CodeWriter<ColorArray> color(leaf, "Cd");
+  CodeWriter<VectorArray> color(leaf, "Cd");
   for (std::size_t i = 0; i < voxels.size(); ++i) {
-    const auto& code = records[voxels[i].record].color_code;
-    color[i] = {code[0], code[1], code[2]};
+    color[i] = openvdb::Vec3f(color_of(records[voxels[i].record]).cast<float>().eval().data());
   }
 }
 

@@ -47,6 +47,9 @@ PointCloud at_utm(PointCloud cloud) {
   return cloud;
 }
 
+// Of a stored covariance element, as a share of it.
+double rounding_of(std::int64_t count) { return count <= 256 ? 0x1p-8 : 0x1p-16; }
+
 // Mean and covariance as stored against those of the points, by the errors of points, mean and rounding.
 void expect_moments(const VoxelRecord& record, const VoxelIndex& voxel, const Moments& expected) {
   EXPECT_EQ(record.count, expected.count);
@@ -57,7 +60,8 @@ void expect_moments(const VoxelRecord& record, const VoxelIndex& voxel, const Mo
   const Eigen::Matrix3d covariance = expected.covariance();
   const Eigen::Matrix3d error = covariance_of(record) - covariance;
   const double n_by_n_less_1 = expected.count > 1 ? static_cast<double>(expected.count) / (expected.count - 1.0) : 1;
-  const Eigen::Array33d allowed = kQuantum * kSize * n_by_n_less_1 + 0x1p-16 * covariance.array().abs();
+  const Eigen::Array33d allowed =
+      kQuantum * kSize * n_by_n_less_1 + rounding_of(expected.count) * covariance.array().abs();
   EXPECT_TRUE((error.array().abs() <= allowed).all()) << error << "\nallowed\n" << allowed;
 }
 
@@ -79,7 +83,7 @@ void expect_brute_force(const VoxelMap& map, const PointCloud& cloud) {
     ASSERT_NE(record, nullptr) << voxel;
     expect_moments(*record, voxel, test::two_pass_moments(cloud.positions, numbers, map.frame.anchor));
     const Eigen::Vector3d color = mean_linear_color(cloud, numbers);
-    EXPECT_LE((color_of(*record) - color).cwiseAbs().maxCoeff(), 0.5 / 65535 + 1e-12);  // half a step
+    EXPECT_TRUE(((color_of(*record) - color).array().abs() <= 0x1.01p-8 * color.array()).all());  // 8 bits
   }
 }
 

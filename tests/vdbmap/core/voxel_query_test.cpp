@@ -76,8 +76,8 @@ TEST_F(VoxelQuery, TheVoxelAtAPointHoldsTheMomentsOfItsPoints) {
       EXPECT_EQ(voxel->count, expected.count);
       const double step = level.voxel_size() / kMeanSteps;
       EXPECT_TRUE(((voxel->mean - expected.mean).array().abs() < 2 * step).all());
-      EXPECT_TRUE(voxel->covariance.isApprox(expected.covariance(), 1e-3));
-      EXPECT_TRUE(voxel->features.eigenvalues.isApprox(eigen_features(expected.covariance()).eigenvalues, 1e-3));
+      EXPECT_TRUE(voxel->covariance.isApprox(expected.covariance(), 0x1p-8));  // elements have 8 bits
+      EXPECT_TRUE(voxel->features.eigenvalues.isApprox(eigen_features(expected.covariance()).eigenvalues, 0x1p-7));
       EXPECT_NEAR(voxel->normal.norm(), 1, 1e-6);
     }
   }

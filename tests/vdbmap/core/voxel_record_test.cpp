@@ -8,6 +8,7 @@
 #include <gtest/gtest.h>
 
 #include "tests/support/random_points.h"
+#include "vdbmap/core/srgb.h"
 
 namespace vdbmap {
 namespace {
@@ -59,8 +60,8 @@ TEST(VoxelRecord, KeepsMomentsThroughSetAndGet) {
 
   const Moments kept = moments_of(record, voxel, kSize);
   EXPECT_EQ(kept.count, 9);
-  EXPECT_TRUE(kept.scatter.isApprox(moments.scatter, 1e-5));  // 16 bits
-  EXPECT_TRUE(covariance_of(record).isApprox(moments.scatter / 8, 1e-5));
+  EXPECT_TRUE(kept.scatter.isApprox(moments.scatter, 0x1p-8));  // 8 bits
+  EXPECT_TRUE(covariance_of(record).isApprox(moments.scatter / 8, 0x1p-8));
   EXPECT_EQ(covariance_of(record), covariance_of(record).transpose());
 }
 
@@ -77,28 +78,47 @@ TEST(VoxelRecord, CountsEndAtTheFilesLargestNumber) {
   EXPECT_EQ(record.count, 2'147'483'647U);
 }
 
-TEST(VoxelRecord, CovariancesAreRoundedToTheNearestOfSixteenBits) {
+// Whether all significant bits of a value are among the first `bits`.
+bool fits(double value, int bits) {
+  int exponent = 0;
+  const double whole = std::ldexp(std::frexp(value, &exponent), bits);
+  return whole == std::round(whole);
+}
+
+struct CovarianceRounding {
+  std::int64_t count;
+  int bits;
+};
+
+class RoundedCovariance : public testing::TestWithParam<CovarianceRounding> {};
+
+TEST_P(RoundedCovariance, IsTheNearestOfItsBits) {
+  const auto [count, bits] = GetParam();
   std::mt19937 random(2);
   std::uniform_real_distribution<double> exponent(-10, 1);
   double worst = 0;
   for (int i = 0; i < 100'000; ++i) {
     const double value = (i % 2 == 0 ? 1 : -1) * std::pow(10, exponent(random));
-    const double rounded = round_covariance(value);
+    const double rounded = round_covariance(value, count);
     worst = std::max(worst, std::abs(rounded - value) / std::abs(value));
-    int binary_exponent = 0;
-    const double sixteen_bits = std::ldexp(std::frexp(rounded, &binary_exponent), 16);
-    EXPECT_EQ(sixteen_bits, std::round(sixteen_bits));
+    EXPECT_TRUE(fits(rounded, bits)) << rounded;
   }
-  // Half a step of 2^-15 of the leading bit, and the rounding to float before it.
-  EXPECT_LT(worst, 0x1p-16 + 0x1p-24);
-  EXPECT_GT(worst, 0x1p-17);
+  // Half a step of the last bit, and the rounding to float before it.
+  EXPECT_LT(worst, std::ldexp(1, -bits) + 0x1p-24);
+  EXPECT_GT(worst, std::ldexp(1, -bits - 1));
 }
 
+INSTANTIATE_TEST_SUITE_P(FewAndManyPoints, RoundedCovariance,
+                         testing::Values(CovarianceRounding{2, 8}, CovarianceRounding{256, 8},
+                                         CovarianceRounding{257, 16}, CovarianceRounding{std::int64_t{1} << 40, 16}));
+
 TEST(VoxelRecord, RoundingACovarianceKeepsZeroAndSign) {
-  EXPECT_EQ(round_covariance(0), 0);
-  EXPECT_EQ(round_covariance(-0.25), -0.25f);
-  EXPECT_EQ(round_covariance(0.25), 0.25f);
-  EXPECT_EQ(round_covariance(1.9999999), 2.0f);  // carries into the exponent
+  for (const std::int64_t count : {2, 1000}) {
+    EXPECT_EQ(round_covariance(0, count), 0);
+    EXPECT_EQ(round_covariance(-0.25, count), -0.25f);
+    EXPECT_EQ(round_covariance(0.25, count), 0.25f);
+    EXPECT_EQ(round_covariance(1.9999999, count), 2.0f);  // carries into the exponent
+  }
 }
 
 TEST(VoxelRecord, KeepsNormalsToTwoThirdsOfADegreeInAllDirections) {
@@ -148,16 +168,29 @@ TEST(VoxelRecord, KeepsNormalsOnTheSeamsOfTheCode) {
   }
 }
 
-TEST(VoxelRecord, KeepsColorsToHalfAStepAndClampsTheRest) {
+TEST(VoxelRecord, KeepsColorsToEightBitsAndClampsTheRest) {
   const Eigen::AlignedBox3d unit(Eigen::Vector3d::Zero(), Eigen::Vector3d::Ones());
   for (const Eigen::Vector3d& color : test::random_points(1000, unit, 5)) {
     VoxelRecord record;
     set_color(record, color);
-    EXPECT_LE((color_of(record) - color).cwiseAbs().maxCoeff(), 0.5 / 65535 + 1e-12);
+    const Eigen::Array3d error = (color_of(record) - color).array().abs();
+    EXPECT_TRUE((error <= (0x1p-8 + 0x1p-24) * color.array()).all()) << color.transpose();
   }
   VoxelRecord record;
   set_color(record, {-0.5, 1.5, 1});
   EXPECT_EQ(color_of(record), Eigen::Vector3d(0, 1, 1));
+  set_color(record, {std::nan(""), -0.0, 0.5});
+  EXPECT_EQ(record.color_code, (std::array<std::uint16_t, 3>{0, 0, 0x3f00}));
+}
+
+TEST(VoxelRecord, KeepsEveryColorOfEightBitsInSrgb) {
+  for (int level = 0; level <= 255; ++level) {
+    VoxelRecord record;
+    set_color(record, Eigen::Vector3d::Constant(linear_from_srgb(static_cast<std::uint16_t>(257 * level)) / 65535.0));
+    const double linear = color_of(record).x();
+    const double srgb = linear <= 0.0031308 ? 12.92 * linear : 1.055 * std::pow(linear, 1 / 2.4) - 0.055;
+    EXPECT_EQ(std::lround(255 * srgb), level);
+  }
 }
 
 }  // namespace

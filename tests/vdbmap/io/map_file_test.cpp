@@ -17,6 +17,8 @@
 namespace vdbmap {
 namespace {
 
+constexpr unsigned kWhite = 0x3f80;  // largest code of a colour: upper half of 1.0f
+
 using test::io_error_of;
 
 // While it lives no file may grow beyond a size; write() then fails as it does on a full disk.
@@ -74,7 +76,7 @@ TEST_F(MapFile, EveryCodeComesBack) {
     for (VoxelRecord& record : level.records()) {
       record.count = static_cast<std::uint32_t>(1 + random() % 0x7fffffffu);
       for (int i = 0; i < 3; ++i) record.mean_code[i] = static_cast<std::uint16_t>(random() % kMeanSteps);
-      for (int i = 0; i < 3; ++i) record.color_code[i] = static_cast<std::uint16_t>(random());
+      for (int i = 0; i < 3; ++i) record.color_code[i] = static_cast<std::uint16_t>(random() % (kWhite + 1));
       record.normal_code = static_cast<std::uint16_t>(random());
       record.planarity_code = static_cast<std::uint8_t>(random());
     }
