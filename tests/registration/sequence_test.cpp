@@ -1,0 +1,210 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "registration/sequence.h"
+
+#include <limits>
+#include <vector>
+
+#include <gtest/gtest.h>
+
+#include "tests/support/pose_distance.h"
+#include "tests/support/synthetic_scene.h"
+#include "tests/support/threads.h"
+#include "vdbmap/core/map_builder.h"
+
+namespace vdbmap::registration {
+namespace {
+
+const VoxelMap& street_map() {
+  static const VoxelMap map = build_map(test::sample_scene(test::street(), 150, 1));
+  return map;
+}
+
+// A drive down the street, a metre a scan, every scan with noise of its own; the sensor is turned so that no axis is
+// the map's.
+struct Drive {
+  std::vector<Eigen::Isometry3d> map_from_scan;
+  std::vector<PointCloud> scans;
+
+  explicit Drive(int num_scans, double first_x = -14, double step = 1) {
+    for (int i = 0; i < num_scans; ++i) {
+      Eigen::Isometry3d pose(Eigen::Translation3d(first_x + step * i, 0.5 + 0.02 * i, 1.8));
+      pose.rotate(Eigen::AngleAxisd(2.3 + 0.01 * i, Eigen::Vector3d::UnitZ()));
+      map_from_scan.push_back(pose);
+      test::Scanner scanner;
+      scanner.num_azimuths = 600;
+      scanner.range_noise = 0.01;
+      scanner.seed = static_cast<unsigned>(i) + 1;
+      scans.push_back(test::scan_scene(test::street(), pose, scanner));
+    }
+  }
+};
+
+// Of a scan that is found: a few centimetres, from 1 cm of noise on points a metre apart.
+void expect_found(const SequenceScan& scan, const Eigen::Isometry3d& truth) {
+  EXPECT_TRUE(scan.found()) << scan.reason;
+  const auto error = test::distance_between(scan.map_from_scan, truth);
+  EXPECT_LT(error.translation, 0.04);
+  EXPECT_LT(error.rotation_deg, 0.3);
+}
+
+SequenceResult localize(const std::vector<PointCloud>& scans, const VoxelMap& map = street_map(),
+                        const LocalizerOptions& options = {}) {
+  SequenceLocalizer localizer(map, options);
+  for (const PointCloud& scan : scans) localizer.add(scan);
+  return localizer.finish();
+}
+
+TEST(Sequence, IsFoundWithNoFirstGuess) {
+  const Drive drive(8);
+  const SequenceResult result = localize(drive.scans);
+  ASSERT_EQ(result.scans.size(), 8u);
+  ASSERT_EQ(result.batches.size(), 1u);
+  EXPECT_TRUE(result.batches[0].search.found()) << result.batches[0].search.reason;
+  for (std::size_t i = 0; i < 8; ++i) expect_found(result.scans[i], drive.map_from_scan[i]);
+}
+
+TEST(Sequence, IsFoundInAMapAtUtmCoordinates) {
+  const Eigen::Vector3d utm(552'320, 5'802'560, 64);
+  BuildOptions options;
+  const VoxelMap map = build_map(
+      test::moved(test::sample_scene(test::street(), 150, 1), Eigen::Isometry3d(Eigen::Translation3d(utm))), options);
+  const Drive drive(4);
+  const SequenceResult result = localize(drive.scans, map);
+  for (std::size_t i = 0; i < 4; ++i) expect_found(result.scans[i], Eigen::Translation3d(utm) * drive.map_from_scan[i]);
+}
+
+TEST(Sequence, FollowsGivenOdometry) {
+  const Drive drive(6);
+  SequenceLocalizer localizer(street_map());
+  for (std::size_t i = 0; i < 6; ++i) {
+    const bool is_missing = i == 2;
+    localizer.add(drive.scans[i],
+                  is_missing ? std::nullopt : std::optional(drive.map_from_scan[0].inverse() * drive.map_from_scan[i]));
+  }
+  const SequenceResult result = localizer.finish();
+  EXPECT_FALSE(result.scans[2].found());
+  EXPECT_NE(result.scans[2].reason.find("odometry has no pose"), std::string::npos);
+  for (const std::size_t i : {0u, 1u, 3u, 4u, 5u}) expect_found(result.scans[i], drive.map_from_scan[i]);
+}
+
+TEST(Sequence, GoesOnAfterAGap) {
+  const Drive first(4, -20);
+  const Drive second(4, 14);  // 30 m on
+  std::vector<PointCloud> scans = first.scans;
+  scans.insert(scans.end(), second.scans.begin(), second.scans.end());
+  const SequenceResult result = localize(scans);
+  for (std::size_t i = 0; i < 4; ++i) {
+    expect_found(result.scans[i], first.map_from_scan[i]);
+    expect_found(result.scans[4 + i], second.map_from_scan[i]);
+  }
+}
+
+TEST(Sequence, LeavesOutScansWithoutUse) {
+  const Drive drive(4);
+  std::vector<PointCloud> scans = drive.scans;
+  scans.insert(scans.begin() + 2, PointCloud());
+  PointCloud far;
+  far.positions = {{500, 0, 0}, {0, 500, 0}, {0, 0, 500}};
+  scans.push_back(far);
+  SequenceLocalizer localizer(street_map());
+  for (const PointCloud& scan : scans) localizer.add(scan);
+  localizer.skip("cannot be read");
+  const SequenceResult result = localizer.finish();
+  ASSERT_EQ(result.scans.size(), 7u);
+  for (const std::size_t i : {2u, 5u, 6u}) {
+    EXPECT_FALSE(result.scans[i].found());
+    EXPECT_FALSE(result.scans[i].reason.empty());
+  }
+  EXPECT_EQ(result.scans[6].reason, "cannot be read");
+  expect_found(result.scans[1], drive.map_from_scan[1]);
+  expect_found(result.scans[4], drive.map_from_scan[3]);
+}
+
+TEST(Sequence, AScanThatRepeatsLiesWhereItLay) {
+  const Drive drive(3);
+  const SequenceResult result = localize({drive.scans[0], drive.scans[1], drive.scans[1], drive.scans[2]});
+  expect_found(result.scans[1], drive.map_from_scan[1]);
+  expect_found(result.scans[2], drive.map_from_scan[1]);
+  expect_found(result.scans[3], drive.map_from_scan[2]);
+}
+
+TEST(Sequence, IsNotFoundInAMapOfAnotherPlace) {
+  const VoxelMap room = build_map(test::sample_scene(test::room(), 300, 1));
+  const SequenceResult result = localize(Drive(4).scans, room);
+  for (const SequenceScan& scan : result.scans) EXPECT_FALSE(scan.found());
+  EXPECT_FALSE(result.batches[0].search.reason.empty());
+}
+
+TEST(Sequence, IsNotFoundWhereNothingTellsOnePlaceFromAnother) {
+  const VoxelMap corridor = build_map(test::sample_scene(test::corridor(), 100, 1));
+  test::Scanner scanner;
+  scanner.num_azimuths = 600;
+  const PointCloud scan =
+      test::scan_scene(test::corridor(), Eigen::Isometry3d(Eigen::Translation3d(7, 0, 1.5)), scanner);
+  const SequenceResult result = localize({scan, scan, scan}, corridor);
+  for (const SequenceScan& located : result.scans) EXPECT_FALSE(located.found());
+}
+
+TEST(Sequence, OfNothingIsNothing) {
+  const SequenceResult result = localize({});
+  EXPECT_TRUE(result.scans.empty());
+  EXPECT_TRUE(result.batches.empty());
+}
+
+TEST(Sequence, IsAsNewAfterFinish) {
+  const Drive drive(3);
+  SequenceLocalizer localizer(street_map());
+  for (int round = 0; round < 2; ++round) {
+    for (const PointCloud& scan : drive.scans) localizer.add(scan);
+    const SequenceResult result = localizer.finish();
+    ASSERT_EQ(result.scans.size(), 3u);
+    expect_found(result.scans[2], drive.map_from_scan[2]);
+  }
+}
+
+TEST(Sequence, DoesNotDependOnTheNumberOfThreads) {
+  const Drive drive(4);
+  const auto one = test::on_threads(1, [&] { return localize(drive.scans); });
+  const auto four = test::on_threads(4, [&] { return localize(drive.scans); });
+  for (std::size_t i = 0; i < 4; ++i) {
+    EXPECT_EQ(one.scans[i].map_from_scan.matrix(), four.scans[i].map_from_scan.matrix());
+    EXPECT_EQ(one.scans[i].covariance, four.scans[i].covariance);
+  }
+}
+
+TEST(Sequence, NeedsACoarseLevel) {
+  BuildOptions options;
+  options.voxel_sizes = {0.1};
+  const VoxelMap fine = build_map(test::sample_scene(test::room(), 50, 1), options);
+  EXPECT_THROW(SequenceLocalizer{fine}, std::invalid_argument);
+}
+
+TEST(Localizer, RefusesOptionsOutOfRange) {
+  LocalizerOptions options;
+  options.batch_size = 0;
+  EXPECT_THROW(Localizer(street_map(), options), std::invalid_argument);
+  options = {};
+  options.verdict.min_margin = 0.5;
+  EXPECT_THROW(Localizer(street_map(), options), std::invalid_argument);
+  options = {};
+  options.verdict.max_deviation = std::numeric_limits<double>::quiet_NaN();
+  EXPECT_THROW(Localizer(street_map(), options), std::invalid_argument);
+}
+
+// Two batches that odometry says lie 3 m apart, but one of them is a scan of another part of the street.
+TEST(Localizer, BelievesNoBatchThatOdometryContradicts) {
+  const Drive here(3, -20), there(3, 14);
+  LocalizerOptions options;
+  options.batch_size = 3;
+  Localizer localizer(street_map(), options);
+  for (std::size_t i = 0; i < 6; ++i) {
+    const PointCloud& scan = i < 3 ? here.scans[i] : there.scans[i - 3];
+    const Eigen::Isometry3d odometry = Eigen::Isometry3d(Eigen::Translation3d(-0.7 * static_cast<double>(i), 0, 0));
+    localizer.add({scan.positions, odometry, true});
+  }
+  const SequenceResult result = localizer.finish();
+  for (const SequenceScan& scan : result.scans) EXPECT_FALSE(scan.found());
+}
+
+}  // namespace
+}  // namespace vdbmap::registration
