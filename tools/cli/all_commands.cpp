@@ -13,11 +13,12 @@ Command import_command();
 Command merge_command();
 Command localize_command();
 Command evaluate_command();
+Command render_command();
 
 std::vector<Command> all_commands() {
   return {
       build_command(),  info_command(),  query_command(),    check_command(),    export_command(),
-      import_command(), merge_command(), localize_command(), evaluate_command(),
+      import_command(), merge_command(), localize_command(), evaluate_command(), render_command(),
   };
 }
 

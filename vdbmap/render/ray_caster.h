@@ -37,8 +37,8 @@ struct RayRange {
   double end = std::numeric_limits<double>::infinity();
 };
 
-/// Follows rays through a tree of bit masks: empty regions are crossed in steps of whole nodes (410 m, 13 m and 0.8 m at
-/// 10 cm), only occupied leaves voxel by voxel. Keeps a reference to the tree; for any number of threads.
+/// Follows rays through a tree of bit masks: empty regions are crossed in steps of whole nodes (410 m, 13 m and 0.8 m
+/// at 10 cm), only occupied leaves voxel by voxel. Keeps a reference to the tree; for any number of threads.
 class RayCaster {
  public:
   RayCaster(const VoxelTree& tree, double voxel_size);

@@ -17,6 +17,8 @@ namespace {
 constexpr std::size_t kRowsAtOnce = 8;
 constexpr float kFar = std::numeric_limits<float>::infinity();
 
+constexpr double kClearAir = 300;  // [m] haze is never thicker than that
+
 constexpr int kTileSize = 8;  // [pixels] rays of a tile share a beam
 
 // Further samples of a pixel at an edge; with the middle four, no two in a row or column.
@@ -206,7 +208,7 @@ std::vector<LinearColor> light_faces(const VoxelLevel& level, const VoxelColors&
   return lit;
 }
 
-/// Tells near from far: at the far end of what is seen a third of the colour is lost.
+/// Tells near from far: at the far end of what is seen at most a fifth of the colour is lost.
 struct Haze {
   double begin = 0;           ///< [m]
   double clear_distance = 1;  ///< [m] after which 1/e is left
@@ -262,7 +264,7 @@ Haze haze_of(const Sight& sight) {
     farthest = std::max(farthest, distance);
   }
   if (nearest == kFar) return {};
-  return {nearest, 2.5 * std::max(1.0, static_cast<double>(farthest) - nearest)};
+  return {nearest, std::max(kClearAir, 4 * (static_cast<double>(farthest) - nearest))};
 }
 
 }  // namespace
