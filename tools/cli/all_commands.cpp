@@ -14,12 +14,13 @@ Command merge_command();
 Command odometry_command();
 Command localize_command();
 Command evaluate_command();
+Command render_command();
 Command simulate_command();
 
 std::vector<Command> all_commands() {
   return {
-      build_command(), info_command(),     query_command(),    check_command(),    export_command(),   import_command(),
-      merge_command(), odometry_command(), localize_command(), evaluate_command(), simulate_command(),
+      build_command(), info_command(),     query_command(),    check_command(),    export_command(), import_command(),
+      merge_command(), odometry_command(), localize_command(), evaluate_command(), render_command(), simulate_command(),
   };
 }
 

@@ -18,16 +18,17 @@ constexpr double kInfinity = std::numeric_limits<double>::infinity();
 struct Path {
   std::array<double, 3> origin;
   std::array<double, 3> direction;
-  std::array<double, 3> inverse;
-  std::array<int, 3> step;  ///< +1 or -1
+  std::array<double, 3> inverse;  ///< infinite along an axis on which the ray stands still
+  std::array<double, 3> ahead;    ///< 1 where the ray runs up the axis, else 0: on which side it leaves a cell
 
   Path(const Ray& ray, double voxel_size) {
+    const double voxels_per_metre = 1 / voxel_size;
     for (int axis = 0; axis < 3; ++axis) {
       const auto i = static_cast<std::size_t>(axis);
-      origin[i] = ray.origin[axis] / voxel_size;
-      direction[i] = ray.direction[axis] / voxel_size;
-      inverse[i] = direction[i] == 0 ? kInfinity : 1 / direction[i];
-      step[i] = direction[i] < 0 ? -1 : 1;
+      origin[i] = ray.origin[axis] * voxels_per_metre;
+      direction[i] = ray.direction[axis] == 0 ? 0.0 : ray.direction[axis] * voxels_per_metre;  // never -0
+      inverse[i] = 1 / direction[i];
+      ahead[i] = direction[i] < 0 ? 0 : 1;
     }
   }
 
@@ -43,44 +44,54 @@ struct Arrival {
   int axis = -1;  ///< of the face it came through last; -1: it began here
 };
 
-/// Walks cell by cell over the 2^kLog2Dim cells a side of a node, each 2^kLog2Size voxels a side.
+/// Walks cell by cell over the 2^kLog2Dim cells a side of a node, each 2^kLog2Size voxels a side. Steps have no branch
+/// that depends on the axis: processors would guess it wrong every other time.
 template <int kLog2Dim, int kLog2Size>
 class CellWalk {
  public:
-  CellWalk(const Path& path, const openvdb::Coord& node_origin, double distance) : path_(path) {
-    constexpr double size = 1 << kLog2Size;
+  CellWalk(const Path& path, const openvdb::Coord& node_origin, double distance) {
     for (std::size_t axis = 0; axis < 3; ++axis) {
-      const double corner = node_origin[static_cast<int>(axis)];
-      const double place = path.origin[axis] + distance * path.direction[axis] - corner;
+      constexpr double size = 1 << kLog2Size;
+      const double from_corner = path.origin[axis] - node_origin[static_cast<int>(axis)];
       // By rounding the ray may seem to be just outside of the node it has entered.
-      cell_[axis] = std::clamp(static_cast<int>(std::floor(place / size)), 0, kLast);
-      next_[axis] = path.crossing(axis, corner + (cell_[axis] + (path.step[axis] > 0 ? 1 : 0)) * size);
-      delta_[axis] = path.direction[axis] == 0 ? kInfinity : size * std::abs(path.inverse[axis]);
+      const double place = (from_corner + distance * path.direction[axis]) * (1 / size);
+      const int cell = std::clamp(static_cast<int>(place), 0, (1 << kLog2Dim) - 1);
+      next_[axis] = ((cell + path.ahead[axis]) * size - from_corner) * path.inverse[axis];
+      delta_[axis] = size * std::abs(path.inverse[axis]);
+      place_ += cell << kShift[axis];
+      step_[axis] = path.ahead[axis] > 0 ? 1 << kShift[axis] : -(1 << kShift[axis]);
     }
   }
 
   /// Number of the cell in the node's tables.
   openvdb::Index offset() const {
-    return static_cast<openvdb::Index>((cell_[0] << 2 * kLog2Dim) | (cell_[1] << kLog2Dim) | cell_[2]);
+    constexpr int kMask = (1 << kLog2Dim) - 1;
+    return static_cast<openvdb::Index>((place_ & kMask) | ((place_ >> 1) & (kMask << kLog2Dim)) |
+                                       ((place_ >> 2) & (kMask << 2 * kLog2Dim)));
   }
 
   /// Goes to the next cell; false where the ray leaves the node or its range.
   bool advance(Arrival& arrival, double end) {
-    const std::size_t axis = next_[0] < next_[1] ? (next_[0] < next_[2] ? 0 : 2) : (next_[1] < next_[2] ? 1 : 2);
-    if (!(next_[axis] < end)) return false;
-    arrival = {next_[axis], static_cast<int>(axis)};
-    cell_[axis] += path_.step[axis];
-    next_[axis] += delta_[axis];
-    return cell_[axis] >= 0 && cell_[axis] <= kLast;
+    const bool is_x = (next_[0] <= next_[1]) & (next_[0] <= next_[2]);
+    const bool is_z = !is_x & (next_[2] < next_[1]);
+    const double distance = is_x ? next_[0] : is_z ? next_[2] : next_[1];
+    next_[0] += is_x ? delta_[0] : 0.0;
+    next_[1] += !is_x & !is_z ? delta_[1] : 0.0;
+    next_[2] += is_z ? delta_[2] : 0.0;
+    place_ += is_x ? step_[0] : is_z ? step_[2] : step_[1];
+    arrival = {distance, is_x ? 0 : is_z ? 2 : 1};
+    return (distance < end) & ((place_ & kOutside) == 0);
   }
 
  private:
-  static constexpr int kLast = (1 << kLog2Dim) - 1;
+  // z, y and x lie in one number, each with a bit above it that is set where a step leaves the node on either side.
+  static constexpr std::array<int, 3> kShift = {2 * kLog2Dim + 2, kLog2Dim + 1, 0};
+  static constexpr int kOutside = (1 << kLog2Dim) | (1 << (2 * kLog2Dim + 1)) | (1 << (3 * kLog2Dim + 2));
 
-  const Path& path_;
-  std::array<int, 3> cell_;
   std::array<double, 3> next_;   ///< distance at which the ray leaves the cell on each axis
   std::array<double, 3> delta_;  ///< distance from face to face on each axis
+  std::array<int, 3> step_;
+  int place_ = 0;
 };
 
 /// The voxel where a ray ends.
@@ -135,7 +146,7 @@ int axis_of_entry(const Path& path, const openvdb::CoordBBox& box, double distan
   double nearest = kInfinity;
   for (std::size_t axis = 0; axis < 3; ++axis) {
     const auto i = static_cast<int>(axis);
-    const double plane = path.step[axis] > 0 ? box.min()[i] : box.max()[i] + 1.0;
+    const double plane = path.ahead[axis] > 0 ? box.min()[i] : box.max()[i] + 1.0;
     const double gap = std::abs(path.crossing(axis, plane) - distance);
     if (gap < nearest) {
       nearest = gap;
@@ -147,6 +158,7 @@ int axis_of_entry(const Path& path, const openvdb::CoordBBox& box, double distan
 
 // Cells of the root are as large as its children; there are few of them along any ray through the box.
 bool walk(const VoxelTree& tree, const openvdb::CoordBBox& box, const Path& path, const RayRange& range, End& result) {
+  if (box.empty()) return false;
   const std::optional<RayRange> inside = clip(path, box, range);
   if (!inside) return false;
   Arrival arrival{inside->begin};
@@ -165,11 +177,11 @@ bool walk(const VoxelTree& tree, const openvdb::CoordBBox& box, const Path& path
     if (node && walk(*node, path, arrival, inside->end, result)) return true;
     arrival.distance = kInfinity;
     for (std::size_t axis = 0; axis < 3; ++axis) {
-      const double next = path.crossing(axis, corner[static_cast<int>(axis)] + (path.step[axis] > 0 ? kSize : 0));
+      const double next = path.crossing(axis, corner[static_cast<int>(axis)] + path.ahead[axis] * kSize);
       if (next < arrival.distance) arrival = {next, static_cast<int>(axis)};
     }
     if (!(arrival.distance < inside->end)) return false;
-    corner[arrival.axis] += path.step[static_cast<std::size_t>(arrival.axis)] * kSize;
+    corner[arrival.axis] += path.ahead[static_cast<std::size_t>(arrival.axis)] > 0 ? kSize : -kSize;
   }
 }
 
@@ -181,26 +193,26 @@ Eigen::Vector3d normal_of_face(VoxelFace face) {
   return normal;
 }
 
-RayCaster::RayCaster(const VoxelLevel& level) : level_(level) { level.tree().evalLeafBoundingBox(box_); }
+RayCaster::RayCaster(const VoxelTree& tree, double voxel_size) : tree_(tree), voxel_size_(voxel_size) {
+  tree.evalLeafBoundingBox(box_);
+}
 
 std::optional<RayHit> RayCaster::first_hit(const Ray& ray, const RayRange& range) const {
-  if (level_.size() == 0) return std::nullopt;
-  const Path path(ray, level_.voxel_size());
+  const Path path(ray, voxel_size_);
   End end;
-  if (!walk(level_.tree(), box_, path, range, end)) return std::nullopt;
+  if (!walk(tree_, box_, path, range, end)) return std::nullopt;
   const auto axis = static_cast<std::size_t>(end.arrival.axis);
   RayHit hit;
   hit.voxel = end.leaf->offsetToGlobalCoord(end.offset);
   hit.record = end.leaf->transientData() + rank_in_leaf(*end.leaf, end.offset);
-  hit.face = static_cast<VoxelFace>(2 * axis + (path.step[axis] > 0 ? 0 : 1));
+  hit.face = static_cast<VoxelFace>(2 * axis + (path.ahead[axis] > 0 ? 0 : 1));
   hit.distance = end.arrival.distance;
   return hit;
 }
 
 bool RayCaster::is_blocked(const Ray& ray, const RayRange& range) const {
-  if (level_.size() == 0) return false;
   End end;
-  return walk(level_.tree(), box_, Path(ray, level_.voxel_size()), range, end);
+  return walk(tree_, box_, Path(ray, voxel_size_), range, end);
 }
 
 }  // namespace vdbmap

@@ -37,12 +37,12 @@ struct RayRange {
   double end = std::numeric_limits<double>::infinity();
 };
 
-/// Follows rays through the bit masks of a level: empty regions are crossed in steps of whole nodes of the tree (410 m,
-/// 13 m and 0.8 m at 10 cm), only occupied leaves voxel by voxel. Keeps a reference to the level; any number of
-/// threads.
+/// Follows rays through a tree of bit masks: empty regions are crossed in steps of whole nodes (410 m, 13 m and 0.8 m
+/// at 10 cm), only occupied leaves voxel by voxel. Keeps a reference to the tree; for any number of threads.
 class RayCaster {
  public:
-  explicit RayCaster(const VoxelLevel& level);
+  RayCaster(const VoxelTree& tree, double voxel_size);
+  explicit RayCaster(const VoxelLevel& level) : RayCaster(level.tree(), level.voxel_size()) {}
 
   /// The first occupied voxel that the ray enters within the range. The voxel in which the range begins does not count:
   /// it is not entered.
@@ -52,8 +52,9 @@ class RayCaster {
   bool is_blocked(const Ray& ray, const RayRange& range) const;
 
  private:
-  const VoxelLevel& level_;
-  openvdb::CoordBBox box_;  ///< around all leaves
+  const VoxelTree& tree_;
+  double voxel_size_;       ///< [m]
+  openvdb::CoordBBox box_;  ///< around all leaves; empty without one
 };
 
 }  // namespace vdbmap

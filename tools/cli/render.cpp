@@ -1,0 +1,177 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "vdbmap/render/render.h"
+
+#include <chrono>
+#include <filesystem>
+#include <map>
+#include <optional>
+#include <stdexcept>
+#include <string>
+#include <vector>
+
+#include <CLI/Option.hpp>
+#include <CLI/Validators.hpp>
+#include <nlohmann/json.hpp>
+#include <spdlog/fmt/fmt.h>
+#include <spdlog/spdlog.h>
+
+#include "tools/cli/command.h"
+#include "tools/cli/map_output.h"
+#include "tools/cli/number_list.h"
+#include "tools/cli/output.h"
+#include "vdbmap/core/error.h"
+#include "vdbmap/io/map_file.h"
+#include "vdbmap/io/point_reader.h"
+#include "vdbmap/io/text.h"
+#include "vdbmap/io/trajectory_file.h"
+
+namespace vdbmap::cli {
+namespace {
+
+const std::map<std::string, View> kViews = {
+    {"plan", View::kPlan}, {"perspective", View::kPerspective}, {"orbit", View::kOrbit}};
+const std::map<std::string, ColorBy> kColors = {{"rgb", ColorBy::kRgb},       {"height", ColorBy::kHeight},
+                                                {"normal", ColorBy::kNormal}, {"intensity", ColorBy::kIntensity},
+                                                {"label", ColorBy::kLabel},   {"epoch", ColorBy::kEpoch}};
+
+struct RenderCommandOptions {
+  std::filesystem::path map;
+  std::filesystem::path output;
+  std::string view = "orbit";
+  std::string color_by;
+  std::string size = "1920x1080";
+  std::vector<std::filesystem::path> trajectories;
+  std::vector<std::filesystem::path> points;
+  bool is_plain = false;
+  RenderOptions render;
+};
+
+template <typename Value>
+std::vector<std::string> names_of(const std::map<std::string, Value>& values) {
+  std::vector<std::string> names;
+  for (const auto& [name, value] : values) names.push_back(name);
+  return names;
+}
+
+std::optional<int> side_of(const std::string& text) {
+  const std::optional<std::uint64_t> count = parse_count(text);
+  if (!count || *count < 1 || *count > static_cast<std::uint64_t>(kMaxImageSize)) return std::nullopt;
+  return static_cast<int>(*count);
+}
+
+std::optional<ImageSize> parse_size(const std::string& text) {
+  const std::size_t cross = text.find('x');
+  if (cross == std::string::npos) return std::nullopt;
+  const std::optional<int> width = side_of(text.substr(0, cross));
+  const std::optional<int> height = side_of(text.substr(cross + 1));
+  if (!width || !height) return std::nullopt;
+  return ImageSize{*width, *height};
+}
+
+std::string check_size(const std::string& text) {
+  if (parse_size(text)) return "";
+  return fmt::format("is '{}', expected WIDTHxHEIGHT of 1 to {} pixels each", text, kMaxImageSize);
+}
+
+void add_overlay_options(CLI::App& app, RenderCommandOptions& options) {
+  app.add_option("--trajectory", options.trajectories,
+                 "Poses (KITTI or TUM) to draw over the map: red, green, blue, ...; the perspective follows the first")
+      ->type_name("FILE...");
+  app.add_option("--points", options.points, "Points in the frame of the map to draw over it")->type_name("FILE...");
+}
+
+void add_options(CLI::App& app, RenderCommandOptions& options) {
+  app.add_option("MAP", options.map, "The map (.vdb)")->type_name("FILE")->required();
+  app.add_option("-o,--output", options.output, "Write the picture to this .png file")->type_name("FILE")->required();
+  app.add_option("--view", options.view,
+                 "plan (from above), perspective (along the street) or orbit (all of it), [orbit]")
+      ->check(CLI::IsMember(names_of(kViews)).description(""))
+      ->type_name("NAME");
+  app.add_option(
+         "--color-by", options.color_by,
+         "rgb, height, normal, intensity, label or epoch; by default rgb where the map has colours, else height")
+      ->check(CLI::IsMember(names_of(kColors)).description(""))
+      ->type_name("NAME");
+  app.add_option("--size", options.size, "Of the picture in pixels, [1920x1080]")->check(check_size)->type_name("WxH");
+  add_number_list(
+      app, "--camera", options.render.camera, 0, "N,...",
+      "Instead of the camera that suits the map. plan: X,Y,WIDTH in m. perspective: "
+      "X,Y,Z,HEADING,ELEVATION[,FIELD_OF_VIEW]. orbit: HEADING,ELEVATION[,DISTANCE]. Angles in degrees, the "
+      "heading from +x to the left, elevation below the horizon negative");
+  app.add_option("--level", options.render.voxel_size, "Voxel size of the level to draw [m], the finest by default")
+      ->check(CLI::PositiveNumber.description(""))
+      ->type_name("S");
+  app.add_flag("--plain", options.is_plain, "Only the picture: no grid, scale bar, north arrow and legend");
+  add_overlay_options(app, options);
+}
+
+RenderOptions render_options(const RenderCommandOptions& options) {
+  RenderOptions result = options.render;
+  result.view = kViews.at(options.view);
+  if (!options.color_by.empty()) result.color_by = kColors.at(options.color_by);
+  result.size = *parse_size(options.size);
+  result.has_decoration = !options.is_plain;
+  return result;
+}
+
+RenderOverlays read_overlays(const RenderCommandOptions& options) {
+  RenderOverlays overlays;
+  for (const auto& file : options.trajectories) {
+    overlays.trajectories.push_back({file.filename().string(), read_trajectory(file)});
+  }
+  for (const auto& file : options.points) {
+    overlays.points.push_back({file.filename().string(), read_points(file).cloud.positions});
+  }
+  return overlays;
+}
+
+void check_inputs(const RenderCommandOptions& options) {
+  std::vector<std::filesystem::path> inputs = {options.map};
+  inputs.insert(inputs.end(), options.trajectories.begin(), options.trajectories.end());
+  inputs.insert(inputs.end(), options.points.begin(), options.points.end());
+  check_output(options.output, inputs);
+}
+
+void check_not_empty(const VoxelMap& map, const std::filesystem::path& path) {
+  if (map.levels.empty() || map.finest().size() == 0) throw IoError::malformed(path, "holds no voxels to draw");
+}
+
+ExitCode run(const RenderCommandOptions& options, const CommonOptions& common) {
+  check_inputs(options);
+  const RenderOverlays overlays = read_overlays(options);
+  const VoxelMap map = load_map(options.map);
+  check_not_empty(map, options.map);
+
+  const auto start = std::chrono::steady_clock::now();
+  const RenderResult result = render(map, render_options(options), overlays);
+  const std::chrono::duration<double> duration = std::chrono::steady_clock::now() - start;
+  if (result.is_camera_in_voxel)
+    spdlog::warn("the camera is inside of a voxel: the picture shows what is seen from there");
+  write_png(options.output, result.image);
+
+  if (common.json) {
+    print_json({{"output", options.output.string()},
+                {"width", result.image.width()},
+                {"height", result.image.height()},
+                {"voxels", map.finest().size()},
+                {"camera_in_voxel", result.is_camera_in_voxel},
+                {"seconds", duration.count()}});
+  } else {
+    print_result(fmt::format("{}: {} x {} pixels, drawn in {:.2f} s\n", options.output.string(), result.image.width(),
+                             result.image.height(), duration.count()));
+  }
+  return ExitCode::kDone;
+}
+
+}  // namespace
+
+Command render_command() {
+  return make_command<RenderCommandOptions>(
+      "render", "Draw a map as a picture",
+      "vdbmap render map.vdb -o street.png\n"
+      "vdbmap render map.vdb -o plan.png --view plan --color-by height --trajectory poses.txt truth.txt\n"
+      "vdbmap render map.vdb -o view.png --view perspective --camera=-5,0,1.5,20,-5 --points scan.ply",
+      add_options, run);
+}
+
+}  // namespace vdbmap::cli

@@ -1,0 +1,222 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "vdbmap/render/camera_choice.h"
+
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+#include <optional>
+#include <stdexcept>
+#include <string>
+
+namespace vdbmap {
+namespace {
+
+constexpr double kDegPerRad = 180 / std::numbers::pi;
+constexpr std::size_t kMaxSamples = 200'000;  // voxels looked at
+constexpr std::size_t kMaxFitSamples = 20'000;
+constexpr double kStrayShare = 0.02;  // of the voxels on each side, that may lie outside of the picture
+constexpr double kOrbitFieldOfViewDeg = 35;
+constexpr double kOrbitElevationDeg = -33;
+constexpr double kStreetFieldOfViewDeg = 68;
+constexpr double kStreetElevationDeg = -13;
+constexpr double kMinExtent = 1;  // [m]
+
+std::vector<Eigen::Vector3d> some_voxels(const VoxelLevel& level, std::size_t most) {
+  std::vector<Eigen::Vector3d> centers;
+  const std::vector<const VoxelLeaf*> leaves = level.leaves();
+  const std::size_t stride = level.size() / most + 1;
+  for (std::size_t i = 0; i < leaves.size(); i += stride) {
+    for_each_voxel(*leaves[i], [&](const VoxelIndex& voxel, std::size_t) {
+      centers.push_back(center_of_voxel(voxel, level.voxel_size()));
+    });
+  }
+  return centers;
+}
+
+double quantile(const std::vector<Eigen::Vector3d>& points, int axis, double share) {
+  std::vector<double> values;
+  for (const Eigen::Vector3d& point : points) values.push_back(point[axis]);
+  const auto place = static_cast<std::ptrdiff_t>(std::lround(share * static_cast<double>(values.size() - 1)));
+  std::nth_element(values.begin(), values.begin() + place, values.end());
+  return values[static_cast<std::size_t>(place)];
+}
+
+double principal_heading_deg(const std::vector<Eigen::Vector3d>& points, const Eigen::AlignedBox3d& box) {
+  const Eigen::Vector2d center = box.center().head<2>();
+  Eigen::Matrix2d scatter = Eigen::Matrix2d::Zero();
+  for (const Eigen::Vector3d& point : points) {
+    if (!box.contains(point)) continue;
+    const Eigen::Vector2d offset = point.head<2>() - center;
+    scatter += offset * offset.transpose();
+  }
+  return 0.5 * std::atan2(2 * scatter(0, 1), scatter(0, 0) - scatter(1, 1)) * kDegPerRad;
+}
+
+void check_count(std::span<const double> numbers, std::size_t least, std::size_t most, const char* names) {
+  const bool are_finite = std::all_of(numbers.begin(), numbers.end(), [](double n) { return std::isfinite(n); });
+  if (numbers.size() >= least && numbers.size() <= most && are_finite) return;
+  throw std::invalid_argument("the camera has " + std::to_string(numbers.size()) +
+                              " numbers, expected finite ones: " + names);
+}
+
+void check_elevation(double elevation_deg) {
+  if (std::abs(elevation_deg) <= 90) return;
+  throw std::invalid_argument("elevation of the camera is " + std::to_string(elevation_deg) +
+                              " degrees, expected -90 to 90");
+}
+
+Camera plan_camera(const SceneExtent& extent, const ImageSize& size, std::span<const double> numbers) {
+  constexpr double kMargin = 1.06;
+  Eigen::Vector2d center = extent.box.center().head<2>();
+  const Eigen::Vector3d sizes = extent.box.sizes();
+  double width = kMargin * std::max(sizes.x(), sizes.y() * size.width / size.height);
+  if (!numbers.empty()) {
+    check_count(numbers, 3, 3, "X,Y,WIDTH");
+    center = {numbers[0], numbers[1]};
+    width = numbers[2];
+  }
+  const double above = extent.box.max().z() + 100;  // [m] higher than stray voxels of a street
+  return Camera::orthographic(map_from_camera_at({center.x(), center.y(), above}, 90, -90), width, size);
+}
+
+// Whether most of the points lie in the picture but for a margin: stray voxels all around would make a street a dot.
+bool shows_most(const Camera& camera, const std::vector<Eigen::Vector3d>& points) {
+  constexpr double kMargin = 0.03;
+  constexpr double kShare = 0.94;
+  std::size_t num_shown = 0;
+  for (const Eigen::Vector3d& point : points) {
+    const auto place = camera.project(point);
+    if (!place) continue;
+    const Eigen::Array2d share = place->pixel.array() / Eigen::Array2d(camera.size().width, camera.size().height);
+    num_shown += (share >= kMargin).all() && (share <= 1 - kMargin).all() ? 1 : 0;
+  }
+  return static_cast<double>(num_shown) >= kShare * static_cast<double>(points.size());
+}
+
+Camera orbit_at(const Eigen::Vector3d& center, double heading_deg, double elevation_deg, double distance,
+                const ImageSize& size) {
+  Eigen::Isometry3d map_from_camera = map_from_camera_at(center, heading_deg, elevation_deg);
+  map_from_camera.translation() -= distance * map_from_camera.linear().col(2);
+  return Camera::perspective(map_from_camera, kOrbitFieldOfViewDeg, size);
+}
+
+// The nearest from which most of the map is seen.
+Camera fitting_orbit(const VoxelLevel& level, const SceneExtent& extent, double heading_deg, double elevation_deg,
+                     const ImageSize& size) {
+  const std::vector<Eigen::Vector3d> points = some_voxels(level, kMaxFitSamples);
+  const Eigen::Vector3d center = extent.box.center();
+  double near = 0;
+  double far = 20 * extent.box.diagonal().norm() * std::max(1.0, static_cast<double>(size.width) / size.height);
+  for (int i = 0; i < 40; ++i) {
+    const double middle = (near + far) / 2;
+    (shows_most(orbit_at(center, heading_deg, elevation_deg, middle, size), points) ? far : near) = middle;
+  }
+  return orbit_at(center, heading_deg, elevation_deg, far, size);
+}
+
+Camera orbit_camera(const VoxelLevel& level, const SceneExtent& extent, const ImageSize& size,
+                    std::span<const double> numbers) {
+  // The longest direction runs from left to right, a little towards the viewer.
+  if (numbers.empty()) return fitting_orbit(level, extent, extent.heading_deg + 90 - 25, kOrbitElevationDeg, size);
+  check_count(numbers, 2, 3, "HEADING,ELEVATION[,DISTANCE]");
+  check_elevation(numbers[1]);
+  if (numbers.size() == 2) return fitting_orbit(level, extent, numbers[0], numbers[1], size);
+  return orbit_at(extent.box.center(), numbers[0], numbers[1], numbers[2], size);
+}
+
+// How much is to be seen: rays that end neither in front of the lens nor in the sky, the middle of a street best.
+double worth_of(const RayCaster& caster, const Camera& camera) {
+  constexpr double kTooNear = 4;  // [m]
+  constexpr int kSteps = 24;
+  double worth = 0;
+  for (int j = 0; j < kSteps; ++j) {
+    for (int i = 0; i < kSteps; ++i) {
+      const Eigen::Vector2d pixel((i + 0.5) * camera.size().width / kSteps, (j + 0.5) * camera.size().height / kSteps);
+      const auto hit = caster.first_hit(camera.ray_through(pixel));
+      if (hit) worth += hit->distance < kTooNear ? -1 : std::min(hit->distance / 20, 1.0);
+    }
+  }
+  return worth;
+}
+
+Camera street_at(const Eigen::Vector3d& eye, double heading_deg, const ImageSize& size) {
+  return Camera::perspective(map_from_camera_at(eye, heading_deg, kStreetElevationDeg), kStreetFieldOfViewDeg, size);
+}
+
+// Of some places along and beside the long axis, with a view along it either way, the one with most to be seen.
+Camera best_street_camera(const VoxelLevel& level, const SceneExtent& extent, const ImageSize& size) {
+  constexpr double kHeight = 7;  // [m] above the lowest voxels
+  const RayCaster caster(level);
+  const Eigen::Vector3d along(std::cos(extent.heading_deg / kDegPerRad), std::sin(extent.heading_deg / kDegPerRad), 0);
+  const Eigen::Vector3d across(-along.y(), along.x(), 0);
+  const double length = extent.box.sizes().head<2>().norm();
+  Eigen::Vector3d middle = extent.box.center();
+  middle.z() = extent.box.min().z() + kHeight;
+  std::optional<Camera> best;
+  double most = 0;
+  for (const double back : {0.35, 0.25, 0.15}) {
+    for (const double aside : {0.0, 0.06, -0.06, 0.12, -0.12}) {
+      for (const double turn : {1.0, -1.0}) {
+        const Eigen::Vector3d eye = middle - turn * back * length * along + aside * length * across;
+        const Camera camera = street_at(eye, extent.heading_deg + (turn > 0 ? 0 : 180), size);
+        const double worth = worth_of(caster, camera);
+        if (best && worth <= most) continue;
+        best = camera;
+        most = worth;
+      }
+    }
+  }
+  return *best;
+}
+
+// From behind and above the first place of the path, towards where it is some way on.
+std::optional<Camera> camera_along(std::span<const Eigen::Vector3d> path, const ImageSize& size) {
+  constexpr double kAhead = 15;  // [m]
+  if (path.empty()) return std::nullopt;
+  const auto ahead = std::find_if(
+      path.begin(), path.end(), [&](const Eigen::Vector3d& place) { return (place - path.front()).norm() >= kAhead; });
+  const Eigen::Vector3d way = (ahead == path.end() ? path.back() : *ahead) - path.front();
+  if (way.head<2>().norm() < 1) return std::nullopt;
+  const Eigen::Vector3d direction = Eigen::Vector3d(way.x(), way.y(), 0).normalized();
+  const Eigen::Vector3d eye = path.front() - 9 * direction + Eigen::Vector3d(0, 0, 5);
+  return street_at(eye, std::atan2(way.y(), way.x()) * kDegPerRad, size);
+}
+
+Camera perspective_camera(const VoxelLevel& level, const SceneExtent& extent, const ImageSize& size,
+                          std::span<const double> numbers, std::span<const Eigen::Vector3d> path) {
+  if (numbers.empty()) {
+    if (const std::optional<Camera> camera = camera_along(path, size)) return *camera;
+    return best_street_camera(level, extent, size);
+  }
+  check_count(numbers, 5, 6, "X,Y,Z,HEADING,ELEVATION[,FIELD_OF_VIEW]");
+  check_elevation(numbers[4]);
+  const double field_of_view_deg = numbers.size() == 6 ? numbers[5] : kStreetFieldOfViewDeg;
+  return Camera::perspective(map_from_camera_at({numbers[0], numbers[1], numbers[2]}, numbers[3], numbers[4]),
+                             field_of_view_deg, size);
+}
+
+}  // namespace
+
+SceneExtent scene_extent(const VoxelLevel& level) {
+  const std::vector<Eigen::Vector3d> points = some_voxels(level, kMaxSamples);
+  if (points.empty()) throw std::invalid_argument("the map has no voxels to look at");
+  SceneExtent extent;
+  for (int axis = 0; axis < 3; ++axis) {
+    const double middle = (quantile(points, axis, kStrayShare) + quantile(points, axis, 1 - kStrayShare)) / 2;
+    const double half = std::max(quantile(points, axis, 1 - kStrayShare) - middle, kMinExtent / 2);
+    extent.box.min()[axis] = middle - half;
+    extent.box.max()[axis] = middle + half;
+  }
+  extent.heading_deg = principal_heading_deg(points, extent.box);
+  return extent;
+}
+
+Camera choose_camera(const VoxelLevel& level, View view, const ImageSize& size, std::span<const double> numbers,
+                     std::span<const Eigen::Vector3d> path) {
+  const SceneExtent extent = scene_extent(level);
+  if (view == View::kPlan) return plan_camera(extent, size, numbers);
+  if (view == View::kOrbit) return orbit_camera(level, extent, size, numbers);
+  return perspective_camera(level, extent, size, numbers, path);
+}
+
+}  // namespace vdbmap

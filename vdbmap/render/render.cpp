@@ -1,0 +1,129 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "vdbmap/render/render.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <limits>
+#include <numbers>
+#include <stdexcept>
+
+#include "vdbmap/render/decoration.h"
+#include "vdbmap/render/overlay.h"
+#include "vdbmap/render/plot_area.h"
+#include "vdbmap/render/voxel_view.h"
+
+namespace vdbmap {
+namespace {
+
+constexpr std::array kPathColors = {rgb8(0xe3241f), rgb8(0x18a02a), rgb8(0x1f5fe0), rgb8(0xf08a00), rgb8(0x8a2be2)};
+constexpr std::array kPointColors = {rgb8(0xff1fa8), rgb8(0x00d0e0), rgb8(0xfff000)};
+
+const VoxelLevel& chosen_level(const VoxelMap& map, double voxel_size) {
+  if (map.levels.empty()) throw std::invalid_argument("the map has no levels");
+  if (voxel_size == 0) return map.finest();
+  if (const VoxelLevel* level = find_level(map, voxel_size)) return *level;
+  throw std::invalid_argument("the map has no level of " + tick_text(voxel_size, 0.001) + " m");
+}
+
+std::vector<PathOverlay> paths_of(const RenderOverlays& overlays, const Eigen::Vector3d& anchor) {
+  std::vector<PathOverlay> paths;
+  for (const NamedTrajectory& trajectory : overlays.trajectories) {
+    PathOverlay path{trajectory.name, {{}}, kPathColors[paths.size() % kPathColors.size()]};
+    for (const auto& pose : trajectory.poses.map_from_scan) {
+      if (pose) {
+        path.pieces.back().emplace_back(pose->translation() - anchor);
+      } else if (!path.pieces.back().empty()) {
+        path.pieces.emplace_back();
+      }
+    }
+    paths.push_back(std::move(path));
+  }
+  return paths;
+}
+
+std::vector<PointsOverlay> points_of(const RenderOverlays& overlays, const Eigen::Vector3d& anchor) {
+  std::vector<PointsOverlay> all;
+  for (const NamedPoints& named : overlays.points) {
+    PointsOverlay points{named.name, named.points, kPointColors[all.size() % kPointColors.size()]};
+    for (Eigen::Vector3d& point : points.points) point -= anchor;
+    all.push_back(std::move(points));
+  }
+  return all;
+}
+
+// Places of a camera come in the original system, directions do not depend on it.
+std::vector<double> local_numbers(const RenderOptions& options, const Eigen::Vector3d& anchor) {
+  std::vector<double> numbers = options.camera;
+  const std::size_t num_coordinates = options.view == View::kPlan ? 2 : options.view == View::kPerspective ? 3 : 0;
+  for (std::size_t i = 0; i < std::min(num_coordinates, numbers.size()); ++i) {
+    numbers[i] -= anchor[static_cast<Eigen::Index>(i)];
+  }
+  return numbers;
+}
+
+// Half of what is seen is nearer.
+double median_distance(const VoxelView& view) {
+  constexpr std::size_t kStride = 37;
+  std::vector<float> distances;
+  for (std::size_t i = 0; i < view.distances.size(); i += kStride) {
+    if (std::isfinite(view.distances[i])) distances.push_back(view.distances[i]);
+  }
+  if (distances.empty()) return 1;
+  const auto middle = distances.begin() + static_cast<std::ptrdiff_t>(distances.size() / 2);
+  std::nth_element(distances.begin(), middle, distances.end());
+  return *middle;
+}
+
+void draw_scale(Image& image, const Camera& camera, const VoxelView& view) {
+  if (!camera.is_perspective()) return draw_scale_bar(image, camera.pixel_width(), "");
+  const double distance = round_step(0.7 * std::max(1.0, median_distance(view)));
+  draw_scale_bar(image, distance * camera.pixel_width(), " at a distance of " + tick_text(distance, distance) + " m");
+}
+
+double heading_deg(const Camera& camera) {
+  const Eigen::Vector3d right = camera.map_from_camera().linear().col(0);
+  return std::atan2(right.x(), -right.y()) * 180 / std::numbers::pi;
+}
+
+std::vector<std::pair<std::string, Rgb8>> names_of(const std::vector<PathOverlay>& paths,
+                                                   const std::vector<PointsOverlay>& points) {
+  std::vector<std::pair<std::string, Rgb8>> names;
+  for (const PathOverlay& path : paths) names.emplace_back(path.name, path.color);
+  for (const PointsOverlay& cloud : points) names.emplace_back(cloud.name, cloud.color);
+  return names;
+}
+
+bool is_in_voxel(const VoxelLevel& level, const Camera& camera) {
+  const Eigen::Vector3d eye = camera.map_from_camera().translation();
+  const double voxels_per_metre = 1 / level.voxel_size();
+  return is_addressable(eye, voxels_per_metre) &&
+         VoxelFinder(level).find(voxel_of_point(eye, voxels_per_metre)) != nullptr;
+}
+
+}  // namespace
+
+RenderResult render(const VoxelMap& map, const RenderOptions& options, const RenderOverlays& overlays) {
+  Image(options.size.width, options.size.height);  // refuses sizes before any work
+  const VoxelLevel& level = chosen_level(map, options.voxel_size);
+  const VoxelColors colors(map, level, options.color_by);
+  const std::vector<PathOverlay> paths = paths_of(overlays, map.frame.anchor);
+  const std::vector<PointsOverlay> points = points_of(overlays, map.frame.anchor);
+  const std::vector<Eigen::Vector3d> path = paths.empty() ? std::vector<Eigen::Vector3d>{} : paths[0].pieces[0];
+  const Camera camera =
+      choose_camera(level, options.view, options.size, local_numbers(options, map.frame.anchor), path);
+
+  VoxelView view = view_voxels(level, colors, camera);
+  if (options.has_decoration && options.view == View::kPlan) draw_metre_grid(view.image, camera, map.frame.anchor);
+  for (const PointsOverlay& cloud : points) draw_points(view, camera, cloud, level.voxel_size());
+  const double path_width = std::max(2.0, letter_size(options.size) / 5.0);
+  for (const PathOverlay& each : paths) draw_path(view, camera, each, path_width);
+  if (options.has_decoration) {
+    draw_scale(view.image, camera, view);
+    draw_north_arrow(view.image, heading_deg(camera));
+    draw_color_legend(view.image, colors.legend(), names_of(paths, points));
+  }
+  return {std::move(view.image), is_in_voxel(level, camera)};
+}
+
+}  // namespace vdbmap
