@@ -37,6 +37,9 @@ void add_options(CLI::App& app, SimulateCommandOptions& options) {
   app.add_option("--length", simulate.street.length, "Length of the street [m], 30 to 1000")
       ->type_name("L")
       ->capture_default_str();
+  app.add_option("--margin", simulate.street.margin, "How far its houses go on before and after [m], 0 to 200")
+      ->type_name("M")
+      ->capture_default_str();
   app.add_option("--epochs", simulate.street.num_epochs, "Days on which the street is visited, 1 to 20")
       ->type_name("N")
       ->capture_default_str();

@@ -29,7 +29,7 @@ bool is_in_box(const Street& street, const ParkedVehicle& vehicle, const Eigen::
 
 TEST(Changes, CarsThatLeftVanishAndCarsThatCameAppearWhereTheyStood) {
   if (test::kIsSanitized) GTEST_SKIP() << "takes minutes under a sanitizer";
-  const Street street = make_street({.length = 60, .turnover = 0.5});
+  const Street street = make_street({.length = 40, .margin = 5, .turnover = 0.5});
   const std::set<ObjectId> before = vehicles_of(street, 0), after = vehicles_of(street, 1);
   std::set<ObjectId> changed;
   for (const ChangedVoxel& voxel : changed_voxels(street, 0)) {
@@ -50,7 +50,7 @@ TEST(Changes, CarsThatLeftVanishAndCarsThatCameAppearWhereTheyStood) {
 
 TEST(Changes, CarsThatStayChangeNothing) {
   if (test::kIsSanitized) GTEST_SKIP() << "takes minutes under a sanitizer";
-  const Street street = make_street({.length = 40, .occupancy = 1, .turnover = 0});
+  const Street street = make_street({.length = 30, .margin = 5, .occupancy = 1, .turnover = 0});
   const auto changes = changed_voxels(street, 0);
   EXPECT_FALSE(changes.empty());  // people, bicycles, bins and leaves
   EXPECT_TRUE(std::ranges::none_of(changes, [](const ChangedVoxel& voxel) { return voxel.label == kCar; }));

@@ -29,6 +29,7 @@ using std::filesystem::path;
 SimulateOptions short_street() {
   SimulateOptions options;
   options.street.length = 30;
+  options.street.margin = 10;
   options.street.occupancy = 1;
   options.num_scans = 3;
   return options;

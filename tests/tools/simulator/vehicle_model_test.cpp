@@ -39,7 +39,7 @@ TEST(VehicleModel, FillsItsBoxAndOnlyMirrorsLeaveIt) {
     for (const Eigen::Vector3f& vertex : vehicle.mesh.vertices) box.extend(vertex.cast<double>());
     EXPECT_NEAR(box.sizes().x(), shape.length, 2 * kProud) << name_of(body);
     EXPECT_NEAR(box.sizes().z(), shape.height, 1e-4) << name_of(body);
-    EXPECT_NEAR(box.min().z(), 0, 0.001) << name_of(body);
+    EXPECT_NEAR(box.min().z(), 0, 1e-5) << name_of(body);
     EXPECT_NEAR(box.sizes().y(), shape.width + 2 * 0.14, 1e-4) << name_of(body);  // mirrors stand out 14 cm
     EXPECT_NEAR(box.center().x(), 0, kProud) << name_of(body);
   }
@@ -65,7 +65,7 @@ TEST(VehicleModel, LightEntersThroughTheSideWindowsOnly) {
     const DrawnVehicle vehicle(shape);
     const RayCaster caster(vehicle.mesh);
     const auto material_at = [&](double height) {
-      const auto hit = caster.first_hit({{0.6, -5, height}, Eigen::Vector3d::UnitY()});
+      const auto hit = caster.first_hit({{0.25, -5, height}, Eigen::Vector3d::UnitY()});
       return hit ? vehicle.world.materials()[vehicle.mesh.triangles[hit->triangle].material] : Material{};
     };
     EXPECT_GT(material_at(0.85 * shape.height).transmission, 0.5F) << name_of(body);
