@@ -76,7 +76,6 @@ TEST_F(SimulateCommand, SaysWhereItCannotWrite) {
 }
 
 TEST_F(SimulateCommand, ReplacesAnEarlierSimulation) {
-  if (test::kIsSanitized) GTEST_SKIP() << "takes minutes under a sanitizer";
   ASSERT_EQ(vdbmap(quick()).exit_code, 0);
   const std::string first = test::read_raw(out() + "/street.json");
   const test::CommandResult again = vdbmap(quick({"--seed", "2"}));

@@ -28,7 +28,6 @@ bool is_in_box(const Street& street, const ParkedVehicle& vehicle, const Eigen::
 }
 
 TEST(Changes, CarsThatLeftVanishAndCarsThatCameAppearWhereTheyStood) {
-  if (test::kIsSanitized) GTEST_SKIP() << "takes minutes under a sanitizer";
   const Street street = make_street({.length = 40, .margin = 5, .turnover = 0.5});
   const std::set<ObjectId> before = vehicles_of(street, 0), after = vehicles_of(street, 1);
   std::set<ObjectId> changed;

@@ -203,12 +203,14 @@ TEST_F(Simulation, SameSeedGivesSameBytesForAnyNumberOfThreads) {
 }
 
 TEST(SimulateOptions, ParsesSensorsWithAndWithoutTheirEpoch) {
-  EXPECT_EQ(parse_sensor_use("mapper").sensor, Sensor::kMapper);
-  EXPECT_FALSE(parse_sensor_use("mapper").epoch);
-  EXPECT_EQ(parse_sensor_use("hdl64@3").sensor, Sensor::kHdl64);
-  EXPECT_EQ(parse_sensor_use("hdl64@3").epoch, 3);
-  for (const char* text : {"", "radar", "vlp16@", "vlp16@x", "vlp16@-1", "vlp16@1@2", "@1"}) {
-    EXPECT_THROW(parse_sensor_use(text), std::invalid_argument) << text;
+  const std::vector<SensorUse> uses = parse_sensors("mapper,hdl64@3");
+  ASSERT_EQ(uses.size(), 2U);
+  EXPECT_EQ(uses[0].sensor, Sensor::kMapper);
+  EXPECT_FALSE(uses[0].epoch);
+  EXPECT_EQ(uses[1].sensor, Sensor::kHdl64);
+  EXPECT_EQ(uses[1].epoch, 3);
+  for (const char* text : {"", "radar", "vlp16,", "vlp16@", "vlp16@x", "vlp16@-1", "vlp16@1@2", "@1"}) {
+    EXPECT_THROW(parse_sensors(text), std::invalid_argument) << text;
   }
 }
 
@@ -217,7 +219,7 @@ TEST(SimulateOptions, RefusesScansAndEpochsThatCannotBe) {
   options.num_scans = 0;
   EXPECT_THROW(options.check(), std::invalid_argument);
   options = {};
-  options.sensors = {parse_sensor_use("vlp16@2")};
+  options.sensors = parse_sensors("vlp16@2");
   EXPECT_THROW(options.check(), std::invalid_argument);
 }
 
