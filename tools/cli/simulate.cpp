@@ -4,8 +4,8 @@
 #include <chrono>
 #include <filesystem>
 #include <string>
-#include <vector>
 
+#include <CLI/Validators.hpp>
 #include <nlohmann/json.hpp>
 #include <spdlog/fmt/fmt.h>
 
@@ -23,7 +23,7 @@ using simulator::SimulateResult;
 struct SimulateCommandOptions {
   std::filesystem::path out;
   SimulateOptions simulate;
-  std::vector<std::string> sensors;
+  std::string sensors;
 };
 
 // Ranges are checked by the library, whose messages name them.
@@ -33,9 +33,15 @@ void add_options(CLI::App& app, SimulateCommandOptions& options) {
                  "Folder to write; one that exists must be empty or an earlier simulation, which is replaced")
       ->type_name("FOLDER")
       ->required();
-  app.add_option("--seed", simulate.street.seed, "Another seed, another street")->type_name("N")->capture_default_str();
+  app.add_option("--seed", simulate.street.seed, "Another seed, another street")
+      ->check(CLI::NonNegativeNumber.description(""))
+      ->type_name("N")
+      ->capture_default_str();
   app.add_option("--length", simulate.street.length, "Length of the street [m], 30 to 1000")
       ->type_name("L")
+      ->capture_default_str();
+  app.add_option("--margin", simulate.street.margin, "How far its houses go on before and after [m], 0 to 200")
+      ->type_name("M")
       ->capture_default_str();
   app.add_option("--epochs", simulate.street.num_epochs, "Days on which the street is visited, 1 to 20")
       ->type_name("N")
@@ -43,7 +49,6 @@ void add_options(CLI::App& app, SimulateCommandOptions& options) {
   app.add_option("--sensors", options.sensors,
                  "What drives up the street, in every epoch or in one: mapper (cloud.las), vlp16 (scans/), hdl64 "
                  "(scans_hdl64/)")
-      ->delimiter(',')
       ->type_name("NAME[@EPOCH],...")
       ->default_str("mapper@0, vlp16 later");
   app.add_option("--scans", simulate.num_scans, "Scans that vlp16 and hdl64 take in an epoch, 10 a second, 1 to 5000")
@@ -102,7 +107,7 @@ SimulateResult run_with_progress(const std::filesystem::path& out, SimulateOptio
 ExitCode run(const SimulateCommandOptions& options, const CommonOptions& common) {
   const auto start = std::chrono::steady_clock::now();
   SimulateOptions simulate = options.simulate;
-  for (const std::string& sensor : options.sensors) simulate.sensors.push_back(simulator::parse_sensor_use(sensor));
+  if (!options.sensors.empty()) simulate.sensors = simulator::parse_sensors(options.sensors);
   const SimulateResult result = run_with_progress(options.out, simulate, common);
   const std::chrono::duration<double> elapsed = std::chrono::steady_clock::now() - start;
   if (common.json) {

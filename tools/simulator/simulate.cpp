@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "tools/simulator/simulate.h"
 
+#include <algorithm>
 #include <stdexcept>
 
 #include <nlohmann/json.hpp>
@@ -30,8 +31,6 @@ void check_sensor_use(const SensorUse& use, int num_epochs) {
       fmt::format("sensor {} in epoch {}, there are epochs 0 to {}", name_of(use.sensor), *use.epoch, num_epochs - 1));
 }
 
-}  // namespace
-
 SensorUse parse_sensor_use(const std::string& text) {
   const std::size_t at = text.find('@');
   const Sensor sensor = parse_sensor(text.substr(0, at));
@@ -41,6 +40,18 @@ SensorUse parse_sensor_use(const std::string& text) {
     throw std::invalid_argument("epoch " + vdbmap::quoted(text.substr(at + 1)) + " of a sensor is not a number");
   }
   return {sensor, static_cast<int>(*epoch)};
+}
+
+}  // namespace
+
+std::vector<SensorUse> parse_sensors(const std::string& text) {
+  std::vector<SensorUse> uses;
+  for (std::size_t begin = 0; begin <= text.size();) {
+    const std::size_t end = std::min(text.find(',', begin), text.size());
+    uses.push_back(parse_sensor_use(text.substr(begin, end - begin)));
+    begin = end + 1;
+  }
+  return uses;
 }
 
 std::size_t SimulateOptions::num_steps() const {

@@ -24,8 +24,8 @@ struct SensorUse {
   std::optional<int> epoch;  ///< every one where none is given
 };
 
-/// Reads "NAME" or "NAME@EPOCH" with the names mapper, vlp16 and hdl64. Throws std::invalid_argument.
-SensorUse parse_sensor_use(const std::string& text);
+/// Reads "NAME,NAME@EPOCH,..." with the names mapper, vlp16 and hdl64. Throws std::invalid_argument.
+std::vector<SensorUse> parse_sensors(const std::string& text);
 
 /// What a simulation makes.
 struct SimulateOptions {

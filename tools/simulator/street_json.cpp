@@ -24,11 +24,8 @@ Json json_of(const Eigen::Isometry3d& transform) {
 }
 
 Json json_of_options(const StreetOptions& options) {
-  return {{"seed", options.seed},
-          {"length", options.length},
-          {"epochs", options.num_epochs},
-          {"occupancy", options.occupancy},
-          {"turnover", options.turnover}};
+  return {{"seed", options.seed},         {"length", options.length},       {"margin", options.margin},
+          {"epochs", options.num_epochs}, {"occupancy", options.occupancy}, {"turnover", options.turnover}};
 }
 
 Json json_of_axis(const StreetAxis& axis) {

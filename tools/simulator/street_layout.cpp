@@ -122,6 +122,7 @@ StreetLayout make_layout(const StreetOptions& options) {
   StreetLayout layout;
   layout.axis = make_axis(random);
   layout.length = options.length;
+  layout.margin = options.margin;
   layout.sides = {make_side(+1, true, random), make_side(-1, false, random)};
   for (SideLayout& side : layout.sides) {
     side.lots = make_lots(side, {layout.begin(), layout.end()}, layout.length, random);

@@ -11,17 +11,15 @@
 
 namespace vdbmap::simulator {
 
-/// [m] the houses go on before the first and after the last station, so that nobody looks into the void.
-inline constexpr double kStreetMargin = 60;
-
 /// The ground plan: everything that stays, without the things that stand on it.
 struct StreetLayout {
   StreetAxis axis;
   double length;                    ///< [m] cars park at stations 0 to `length`
+  double margin;                    ///< [m] that the houses go on before and after
   std::array<SideLayout, 2> sides;  ///< left, right
 
-  double begin() const { return -kStreetMargin; }
-  double end() const { return length + kStreetMargin; }
+  double begin() const { return -margin; }
+  double end() const { return length + margin; }
 
   /// The side on which an offset [m, left positive] lies.
   const SideLayout& side_of(double offset) const { return offset >= 0 ? sides[0] : sides[1]; }

@@ -18,6 +18,7 @@ void check_range(const char* name, double value, double low, double high, const 
 
 void StreetOptions::check() const {
   check_range("street length", length, 30, 1000, " m");
+  check_range("margin", margin, 0, 200, " m");
   check_range("number of epochs", num_epochs, 1, 20, "");
   check_range("occupancy", occupancy, 0, 1, "");
   check_range("turnover", turnover, 0, 1, "");

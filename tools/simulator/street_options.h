@@ -9,6 +9,7 @@ namespace vdbmap::simulator {
 struct StreetOptions {
   std::uint64_t seed = 1;  ///< another seed, another street
   double length = 175;     ///< [m] 30..1000
+  double margin = 60;      ///< [m] 0..200 that the houses go on before and after, so that nobody looks into the void
   int num_epochs = 2;      ///< 1..20 days on which the street is visited
   double occupancy = 0.7;  ///< share of the parking spaces that is taken, 0..1
   double turnover = 0.3;   ///< share of the parked cars that is gone by the next epoch, 0..1

@@ -3,6 +3,7 @@
 
 #include <array>
 #include <cmath>
+#include <numbers>
 #include <vector>
 
 namespace vdbmap::simulator {
@@ -189,13 +190,24 @@ class Vehicle {
   // Arch, tyre and rim, each a few millimetres before the other.
   void draw_wheel(double at, double side) const {
     const double r = shape_.wheel_radius;
+    draw_arch({at, side * (half_width() + 0.001), r}, 1.13 * r);
     const auto draw_disc = [&](MaterialId material, double radius, double outside) {
       const double y = side * (half_width() + outside);
       add_tube(paint_.with(material), {{at, y - side * 0.22, r}, {at, y, r}, radius, radius, 20, true});
     };
-    draw_disc(materials_.car_trim, 1.13 * r, 0.001);
     draw_disc(materials_.tyre, r, 0.004);
     draw_disc(materials_.rim, 0.66 * r, 0.007);
+  }
+
+  // The dark upper half of a disc.
+  void draw_arch(const Point& hub, double radius) const {
+    constexpr int kNumSides = 12;
+    std::vector<Point> corners;
+    for (int i = 0; i <= kNumSides; ++i) {
+      const double angle = std::numbers::pi * i / kNumSides;
+      corners.emplace_back(hub + radius * Point(std::cos(angle), 0, std::sin(angle)));
+    }
+    add_polygon(paint_.with(materials_.car_trim), corners);
   }
 
   void draw_mirror(double side) const {
