@@ -28,7 +28,7 @@ struct FineOptions {
 struct FineResult {
   Eigen::Isometry3d map_from_scan = Eigen::Isometry3d::Identity();  ///< original system
   Matrix6d covariance =
-      Matrix6d::Zero();        ///< rotation [rad^2] about the sensor, then translation [m^2]; axes of the map
+      Matrix6d::Zero();        ///< rotation [rad^2] about the sensor, then translation [m^2]; axes of the map; noise of scan and map
   double inlier_share = 0;     ///< of the sampled points: matched within 0.15 m of a plane
   double rms_distance = 0;     ///< [m] of the inliers from their planes
   std::size_t num_points = 0;  ///< sampled points
