@@ -32,16 +32,27 @@ std::string describe(const Vector6d& motion) {
   return text.data();
 }
 
+// How fast the sum of weighted distances turns with the motion. A kernel that gives up on far points bends the other
+// way there: where that outweighs the rest, the weights stand in.
+Matrix6d curvature(std::span<const PlaneMatch> matches, std::span<const double> weights, std::span<const double> slopes,
+                   const Eigen::Isometry3d& map_from_scan) {
+  constexpr double kLeastShare = 0.25;
+  const Matrix6d of_weights = information(matches, weights, map_from_scan);
+  const Matrix6d of_slopes = information(matches, slopes, map_from_scan);
+  const Eigen::LDLT<Matrix6d> excess(of_slopes - kLeastShare * of_weights);
+  return excess.isPositive() ? of_slopes : of_weights;
+}
+
 }  // namespace
 
 Matrix6d motion_covariance(std::span<const PlaneMatch> matches, std::span<const double> weights,
-                           const Eigen::Isometry3d& map_from_scan) {
+                           std::span<const double> slopes, const Eigen::Isometry3d& map_from_scan) {
   std::vector<double> squared_pulls = plane_distances(matches, map_from_scan);
   for (std::size_t i = 0; i < squared_pulls.size(); ++i) {
     const double pull = weights[i] * squared_pulls[i];
     squared_pulls[i] = pull * pull;
   }
-  const Matrix6d bread = information(matches, weights, map_from_scan);
+  const Matrix6d bread = curvature(matches, weights, slopes, map_from_scan);
   const Matrix6d filling = information(matches, squared_pulls, map_from_scan);
 
   // The prior belongs to unit noise; scaled by the noise it only shows where the planes say nothing.

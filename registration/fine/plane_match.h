@@ -13,7 +13,7 @@ namespace vdbmap::registration {
 /// A point of the scan and the plane of the map it should lie on.
 struct PlaneMatch {
   Eigen::Vector3d point;   ///< [m] in the frame of the scan
-  Eigen::Vector3d mean;    ///< [m] a point of the plane, local frame of the map
+  Eigen::Vector3d mean;    ///< [m] a point of the plane near the point, local frame of the map
   Eigen::Vector3d normal;  ///< unit
   double planarity = 0;    ///< of the plane, 0 to 1
 };
@@ -26,7 +26,8 @@ struct MatchOptions {
 };
 
 /// For every point the plane of the voxel whose mean is nearest, where there is one that is flat enough; the order of
-/// the points is kept.
+/// the points is kept. With a stored normal the plane goes through the mean of all points of that surface that are
+/// searched, along the normal: through the voxel's own mean only where it stands alone.
 std::vector<PlaneMatch> match_planes(std::span<const Eigen::Vector3d> points_in_scan, const VoxelLevel& level,
                                      const Eigen::Isometry3d& local_from_scan, const MatchOptions& options);
 

@@ -29,12 +29,12 @@ struct FineOptions {
 /// Where a scan lies in a map, and how well that is known.
 struct FineResult {
   Eigen::Isometry3d map_from_scan = Eigen::Isometry3d::Identity();  ///< original system
-  Matrix6d covariance =
-      Matrix6d::Zero();        ///< rotation [rad^2] about the sensor, then translation [m^2]; axes of the map
-  double inlier_share = 0;     ///< of the sampled points: matched within 0.15 m of a plane
-  double rms_distance = 0;     ///< [m] of the inliers from their planes
-  std::size_t num_points = 0;  ///< sampled points
-  bool converged = false;      ///< the last round moved the scan by less than 1 mm and 0.01 degrees
+  Matrix6d covariance = Matrix6d::Zero();  ///< rotation [rad^2] about the sensor, then translation [m^2]; axes of the
+                                           ///< map; noise of scan and map
+  double inlier_share = 0;                 ///< of the sampled points: matched within 0.15 m of a plane
+  double rms_distance = 0;                 ///< [m] of the inliers from their planes
+  std::size_t num_points = 0;              ///< sampled points
+  bool converged = false;                  ///< the last round moved the scan by less than 1 mm and 0.01 degrees
   std::vector<UnobservableDirection> unobservable;
 };
 

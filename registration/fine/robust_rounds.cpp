@@ -21,6 +21,13 @@ double robust_weight(double distance, double scale) {
   return 1 / (denominator * denominator);
 }
 
+// The derivative of weight times distance by the distance.
+double robust_slope(double distance, double scale) {
+  const double ratio = distance / scale;
+  const double denominator = 1 + ratio * ratio;
+  return (1 - 3 * ratio * ratio) / (denominator * denominator * denominator);
+}
+
 std::vector<double> robust_weights(std::span<const PlaneMatch> matches, const Eigen::Isometry3d& local_from_scan,
                                    double scale) {
   std::vector<double> weights = plane_distances(matches, local_from_scan);
@@ -28,6 +35,15 @@ std::vector<double> robust_weights(std::span<const PlaneMatch> matches, const Ei
     weights[i] = matches[i].planarity * robust_weight(weights[i], scale);
   }
   return weights;
+}
+
+std::vector<double> robust_slopes(std::span<const PlaneMatch> matches, const Eigen::Isometry3d& local_from_scan,
+                                  double scale) {
+  std::vector<double> slopes = plane_distances(matches, local_from_scan);
+  for (std::size_t i = 0; i < slopes.size(); ++i) {
+    slopes[i] = matches[i].planarity * robust_slope(slopes[i], scale);
+  }
+  return slopes;
 }
 
 // The weights stand for the kernel, so two steps of the solver are as good as many.
@@ -63,6 +79,7 @@ RoundsResult run_rounds(const MatchingStage& stage, const Eigen::Isometry3d& loc
     kernel = std::max(stage.kernel.last, kernel * stage.kernel.factor);
   }
   result.weights = robust_weights(result.matches, result.local_from_scan, stage.kernel.last);
+  result.slopes = robust_slopes(result.matches, result.local_from_scan, stage.kernel.last);
   return result;
 }
 

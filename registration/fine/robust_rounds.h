@@ -31,6 +31,8 @@ struct RoundsResult {
   Eigen::Isometry3d local_from_scan = Eigen::Isometry3d::Identity();
   std::vector<PlaneMatch> matches;
   std::vector<double> weights;
+  std::vector<double>
+      slopes;              ///< derivatives of weight times distance by the distance: below the weights, even negative
   bool converged = false;  ///< the last round moved the scan by less than 1 mm and 0.01 degrees
 };
 

@@ -7,6 +7,7 @@
 #include <string>
 
 #include "registration/cell_table.h"
+#include "registration/fine/shuffle.h"
 #include "vdbmap/core/parallel.h"
 
 namespace vdbmap::registration {
@@ -88,7 +89,7 @@ SampledScan sample_scan(std::span<const Eigen::Vector3d> points_in_scan, double 
                         const RangeLimits& limits) {
   constexpr double kNearRange = 20;  // [m]
   SampledScan sample;
-  sample.fine = sample_points(points_in_scan, fine_spacing, limits);
+  sample.fine = sample_points(shuffled(points_in_scan), fine_spacing, limits);
   sample.coarse = sample_points(sample.fine, coarse_spacing, limits);
   sample.near = sample_points(sample.coarse, coarse_spacing, {limits.min, kNearRange});
   return sample;

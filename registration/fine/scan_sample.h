@@ -32,7 +32,7 @@ struct SampledScan {
   std::vector<Eigen::Vector3d> near;    ///< those of `coarse` that a wrong heading moves least
 };
 
-/// Thins a scan for both kinds of levels; spacings in metres.
+/// Thins a scan for both kinds of levels, its points in shuffled() order; spacings in metres.
 SampledScan sample_scan(std::span<const Eigen::Vector3d> points_in_scan, double fine_spacing, double coarse_spacing,
                         const RangeLimits& limits);
 

@@ -15,7 +15,7 @@ namespace vdbmap::registration {
 namespace {
 
 const VoxelMap& street_map() {
-  static const VoxelMap map = build_map(test::sample_scene(test::street(), 150, 1));
+  static const VoxelMap map = build_map(test::sample_scene(test::village(), 150, 1));
   return map;
 }
 
@@ -34,7 +34,7 @@ struct Drive {
       scanner.num_azimuths = 600;
       scanner.range_noise = 0.01;
       scanner.seed = static_cast<unsigned>(i) + 1;
-      scans.push_back(test::scan_scene(test::street(), pose, scanner));
+      scans.push_back(test::scan_scene(test::village(), pose, scanner));
     }
   }
 };
@@ -67,7 +67,7 @@ TEST(Sequence, IsFoundInAMapAtUtmCoordinates) {
   const Eigen::Vector3d utm(552'320, 5'802'560, 64);
   BuildOptions options;
   const VoxelMap map = build_map(
-      test::moved(test::sample_scene(test::street(), 150, 1), Eigen::Isometry3d(Eigen::Translation3d(utm))), options);
+      test::moved(test::sample_scene(test::village(), 150, 1), Eigen::Isometry3d(Eigen::Translation3d(utm))), options);
   const Drive drive(4);
   const SequenceResult result = localize(drive.scans, map);
   for (std::size_t i = 0; i < 4; ++i) expect_found(result.scans[i], Eigen::Translation3d(utm) * drive.map_from_scan[i]);

@@ -67,6 +67,39 @@ Scene street() {
   return scene;
 }
 
+Scene village() {
+  std::mt19937 random(11);
+  const auto between = [&](double low, double high) { return low + (high - low) * (random() / 4294967296.0); };
+  Scene scene = {{{-40, -14, 0}, {80, 0, 0}, {0, 28, 0}}};  // ground
+  for (const double side : {-1.0, 1.0}) {
+    for (double x = -40; x < 34;) {
+      const double width = between(5, 10);
+      const double front = between(6, 9.5);  // distance of the facade from the middle of the street
+      const double near = side > 0 ? front : -13;
+      const double far = side > 0 ? 13 : -front;
+      append(scene, box({x, near, 0}, {x + width, far, between(3, 9)}));
+      const double bay = x + between(0.5, width - 2.5);
+      const double depth = between(0.4, 1.3);
+      append(scene, box({bay, side > 0 ? front - depth : -front, 0},
+                        {bay + 1.8, side > 0 ? front : -front + depth, between(2, 4)}));
+      x += width + between(0.5, 4);
+    }
+    for (double x = -38; x < 36; x += between(5, 11)) {
+      Eigen::Isometry3d parked(Eigen::Translation3d(x, side * between(3.6, 4.6), 0));
+      parked.rotate(Eigen::AngleAxisd(between(-0.4, 0.4), Eigen::Vector3d::UnitZ()));
+      for (const Rectangle& r : box({-between(1.8, 2.5), -0.9, 0}, {between(1.8, 2.5), 0.9, between(1.3, 2.2)})) {
+        scene.push_back({parked * r.corner, parked.linear() * r.edge_a, parked.linear() * r.edge_b});
+      }
+    }
+  }
+  for (int i = 0; i < 9; ++i) {
+    const double x = between(-38, 38);
+    const double y = between(4.8, 5.8) * (i % 2 == 0 ? 1 : -1);
+    append(scene, box({x, y, 0}, {x + 0.2, y + 0.2, between(3, 7)}));
+  }
+  return scene;
+}
+
 PointCloud sample_scene(const Scene& scene, double points_per_square_metre, unsigned seed) {
   std::mt19937 random(seed);
   std::uniform_real_distribution<double> share(0, 1);

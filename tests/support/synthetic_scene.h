@@ -32,6 +32,10 @@ Scene corridor();
 /// 60 m of a street along x between two facades with porches, with parked cars, poles and a house across its end.
 Scene street();
 
+/// 80 m of a street along x whose houses, bays, cars and poles are all of sizes and places of their own, so that each
+/// part of it can be told from every other.
+Scene village();
+
 /// Points spread evenly over all surfaces.
 PointCloud sample_scene(const Scene& scene, double points_per_square_metre, unsigned seed);
 

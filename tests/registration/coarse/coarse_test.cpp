@@ -23,18 +23,18 @@ VoxelLevel level_of(const PointCloud& cloud) {
 }
 
 const VoxelLevel& street_level() {
-  static const VoxelLevel level = level_of(test::sample_scene(test::street(), 60, 1));
+  static const VoxelLevel level = level_of(test::sample_scene(test::village(), 60, 1));
   return level;
 }
 
 class CoarseSeed : public testing::TestWithParam<unsigned> {};
 
 // Other points of the same street, turned any way and carried far off: the 2 m and 5 degrees.
-TEST_P(CoarseSeed, FindsAStreetTurnedAnyWay) {
+TEST_P(CoarseSeed, FindsAVillageTurnedAnyWay) {
   std::mt19937 random(GetParam());
   const Eigen::Isometry3d moved_from_street = test::random_motion(90, 25.0 * GetParam(), random);
   const VoxelLevel combined =
-      level_of(test::moved(test::sample_scene(test::street(), 40, 100 + GetParam()), moved_from_street));
+      level_of(test::moved(test::sample_scene(test::village(), 40, 100 + GetParam()), moved_from_street));
   const auto hypotheses = find_coarse(combined, prepare_coarse_map(street_level()));
   ASSERT_FALSE(hypotheses.empty());
   const auto error = test::distance_between(hypotheses.front().target_from_source, moved_from_street.inverse());
@@ -54,7 +54,7 @@ TEST(Coarse, AnEmptyScanOrMapHasNoHypothesis) {
 }
 
 TEST(Coarse, DoesNotDependOnTheNumberOfThreads) {
-  const VoxelLevel combined = level_of(test::sample_scene(test::street(), 40, 5));
+  const VoxelLevel combined = level_of(test::sample_scene(test::village(), 40, 5));
   const auto find = [&] { return find_coarse(combined, prepare_coarse_map(street_level())); };
   const auto one = test::on_threads(1, find);
   const auto four = test::on_threads(4, find);

@@ -41,6 +41,26 @@ Eigen::Isometry3d scanner_pose() {
   return test::random_motion(1.5, 40, random);
 }
 
+// How far the points searched that belong to the surface lie above its nearest mean, on average: those within half a
+// voxel along the normal and 14 degrees (cosine 0.97) of it.
+double height_of_surface(const PlaneMatch& match, const VoxelLevel& level, const VoxelIndex& center,
+                         const MatchOptions& options) {
+  double sum = 0;
+  double count = 0;
+  for_each_voxel(level, [&](const VoxelIndex& voxel, std::size_t number) {
+    const VoxelIndex step = voxel - center;
+    if (std::max({std::abs(step.x()), std::abs(step.y()), std::abs(step.z())}) > options.search_voxels) return;
+    const VoxelRecord& record = level.records()[number];
+    const double height = match.normal.dot(mean_of(record, voxel, level.voxel_size()) - match.mean);
+    const bool is_same =
+        std::abs(height) <= 0.5 * level.voxel_size() && std::abs(normal_of(record).dot(match.normal)) >= 0.97;
+    if (!is_same) return;
+    sum += record.count * height;
+    count += record.count;
+  });
+  return sum / count;
+}
+
 // The match of one point, by looking at every voxel of the level.
 std::optional<PlaneMatch> brute_force_match(const Eigen::Vector3d& point_in_scan, const VoxelLevel& level,
                                             const Eigen::Isometry3d& local_from_scan, const MatchOptions& options) {
@@ -62,6 +82,7 @@ std::optional<PlaneMatch> brute_force_match(const Eigen::Vector3d& point_in_scan
   const PlaneFit own = fit_plane(covariance_of(*nearest));
   match.normal = options.plane_from_voxel ? own.normal : normal_of(*nearest);
   match.planarity = options.plane_from_voxel ? own.planarity : planarity_of(*nearest);
+  if (!options.plane_from_voxel) match.mean += height_of_surface(match, level, center, options) * match.normal;
   if (match.planarity < options.min_planarity || match.planarity <= 0) return std::nullopt;
   return match;
 }
@@ -102,6 +123,25 @@ INSTANTIATE_TEST_SUITE_P(
                     Search{false, {.search_voxels = 0, .min_planarity = 0}},
                     Search{true, {.search_voxels = 1, .min_planarity = 0.3, .plane_from_voxel = true}},
                     Search{true, {.search_voxels = 2, .min_planarity = 0.5, .plane_from_voxel = true}}));
+
+TEST(PlaneMatch, ANoisySurfaceBetweenTwoLayersOfVoxelsIsOnePlane) {
+  // A floor on the border of two layers with 2 cm of noise: means of 1.6 cm above and below it.
+  PointCloud floor = test::sample_scene({{{-3, -3, 0}, {6, 0, 0}, {0, 6, 0}}}, 2000, 5);
+  std::mt19937 random(6);
+  std::normal_distribution<double> noise(0, 0.02);
+  for (Eigen::Vector3d& point : floor.positions) point.z() += noise(random);
+  BuildOptions options;
+  options.anchor = Eigen::Vector3d::Zero();
+  const VoxelMap map = build_map(floor, options);
+  const std::vector<Eigen::Vector3d> points =
+      test::random_points(200, {Eigen::Vector3d(-2, -2, -0.02), Eigen::Vector3d(2, 2, 0.02)}, 7);
+  double sum = 0;
+  for (const PlaneMatch& match : match_planes(points, map.finest(), Eigen::Isometry3d::Identity(), {})) {
+    sum += match.mean.z();
+    EXPECT_LT(std::abs(match.mean.z()), 0.006);  // 2 cm over 180 points and more
+  }
+  EXPECT_LT(std::abs(sum / 200), 0.001);
+}
 
 TEST(PlaneMatch, PlanesAreUnitAndLieInTheRoom) {
   const auto matches = match_planes(points_in_scan(scanner_pose()), room_map().finest(), scanner_pose(), {});

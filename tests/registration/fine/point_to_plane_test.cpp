@@ -114,9 +114,10 @@ TEST(PointToPlane, FindsAScanInAMapAtUtmCoordinates) {
   const Eigen::Isometry3d utm_from_local(Eigen::Translation3d{kUtm});
   const FineResult at_utm = align_scan(scan, map, utm_from_local * guess);
   expect_at(at_utm, utm_from_local * pose);
-  // The same as without the anchor but for points that rounding at UTM values (1e-9 m) put one quantum aside.
+  // The same as without the anchor but for points that rounding at UTM values (1e-9 m) put one quantum aside, which
+  // may let a voxel join the surface beside it or not.
   const FineResult local = align_scan(scan, street_map(), guess);
-  EXPECT_LT(test::distance_between(at_utm.map_from_scan, utm_from_local * local.map_from_scan).translation, 1e-4);
+  EXPECT_LT(test::distance_between(at_utm.map_from_scan, utm_from_local * local.map_from_scan).translation, 3e-4);
 }
 
 TEST(PointToPlane, DoesNotDependOnTheNumberOfThreads) {
@@ -189,13 +190,15 @@ TEST(PointToPlane, CovarianceTellsHowFarNoisyScansScatter) {
     mean += errors.back() / kTrials;
   }
 
-  double chi_squared = 0;  // about the mean: the covariance speaks of noise, not of the voxels' own errors
+  double chi_squared = 0;  // about the mean: the voxels' own errors are the same in all trials
   for (int i = 0; i < kTrials; ++i) {
     chi_squared += (errors[i] - mean).dot(results[i].covariance.ldlt().solve(errors[i] - mean));
   }
   const double freedom = 6 * (kTrials - 1);
-  EXPECT_NEAR(chi_squared, freedom, 4 * std::sqrt(2 * freedom));  // four standard deviations of chi squared
-  EXPECT_LT(mean.tail<3>().norm(), 0.005);                        // as without noise
+  // Four standard deviations of chi squared; below, the share of the covariance that stands for the voxels' own errors.
+  EXPECT_LT(chi_squared, freedom + 4 * std::sqrt(2 * freedom));
+  EXPECT_GT(chi_squared, 0.5 * freedom);
+  EXPECT_LT(mean.tail<3>().norm(), 0.005);  // as without noise
 }
 
 void expect_lost(const FineResult& result, const Eigen::Isometry3d& guess) {
