@@ -28,6 +28,7 @@ BatchCandidate align(const CombinedScans& combined, const VoxelMap& map, const P
 
   BatchCandidate candidate;
   candidate.map_from_batch = fine.map_from_scan;
+  candidate.coarse_guess = map_from_batch;
   candidate.num_feature_inliers = hypothesis.num_inliers;
   candidate.evidence = weigh(combined.sample.fine, combined.rays, map, fine.map_from_scan);
   candidate.agreement = surface_agreement(combined.pieces, map, fine.map_from_scan);

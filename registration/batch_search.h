@@ -37,6 +37,7 @@ struct CombinedScans {
 /// A pose of the batch, aligned as well as may be.
 struct BatchCandidate {
   Eigen::Isometry3d map_from_batch = Eigen::Isometry3d::Identity();  ///< original system
+  Eigen::Isometry3d coarse_guess = Eigen::Isometry3d::Identity();    ///< the same before it was aligned
   std::size_t num_feature_inliers = 0;                               ///< of the coarse search
   double agreement = 0;                                              ///< surface_agreement()
   Evidence evidence;

@@ -18,8 +18,14 @@ std::optional<std::filesystem::path> drive_folder() {
   return *data / "kitti_drive5";
 }
 
-std::optional<Drive> read_drive() {
-  const auto folder = drive_folder();
+std::optional<std::filesystem::path> residential_folder() {
+  const auto drive = drive_folder();
+  if (!drive) return std::nullopt;
+  const std::filesystem::path folder = std::filesystem::absolute(*drive) / ".." / "kitti00";
+  return std::filesystem::is_directory(folder) ? std::optional(folder) : std::nullopt;
+}
+
+std::optional<Drive> read_drive(const std::optional<std::filesystem::path>& folder) {
   if (!folder) return std::nullopt;
   Drive drive;
   drive.files = list_point_files({*folder / "velodyne"});
@@ -33,7 +39,12 @@ std::optional<Drive> read_drive() {
 }  // namespace
 
 const Drive* kitti_drive() {
-  static const std::optional<Drive> drive = read_drive();
+  static const std::optional<Drive> drive = read_drive(drive_folder());
+  return drive ? &*drive : nullptr;
+}
+
+const Drive* kitti_residential() {
+  static const std::optional<Drive> drive = read_drive(residential_folder());
   return drive ? &*drive : nullptr;
 }
 

@@ -21,6 +21,9 @@ struct Drive {
 /// ../shared/data beside the source tree; nullptr where there is none.
 const Drive* kitti_drive();
 
+/// kitti00 beside that drive, a residential street; nullptr where there is none.
+const Drive* kitti_residential();
+
 /// What a row says that needs the drive where it is missing.
 inline constexpr const char* kNoDrive = "no drive found; set VDBMAP_DRIVE to a folder with velodyne/ and poses.txt";
 

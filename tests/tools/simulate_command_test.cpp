@@ -42,6 +42,7 @@ TEST_F(SimulateCommand, RefusesWrongOptionsInOneLine) {
       {{"--length", "1e9"}, "street length"},
       {{"--length", "nan"}, "street length nan"},
       {{"--epochs", "0"}, "number of epochs 0, allowed are 1 to 20"},
+      {{"--seed", "-1"}, "--seed: is -1, expected a whole number from 0 on"},
       {{"--scans", "0"}, "number of scans 0"},
       {{"--sensors", "radar"}, "unknown sensor 'radar'"},
       {{"--sensors", "vlp16@7"}, "there are epochs 0 to 1"},

@@ -5,7 +5,6 @@
 #include <filesystem>
 #include <string>
 
-#include <CLI/Validators.hpp>
 #include <nlohmann/json.hpp>
 #include <spdlog/fmt/fmt.h>
 
@@ -26,6 +25,11 @@ struct SimulateCommandOptions {
   std::string sensors;
 };
 
+// A negative number would turn into a huge one.
+std::string expect_no_sign(const std::string& text) {
+  return text.starts_with('-') ? "is " + text + ", expected a whole number from 0 on" : std::string();
+}
+
 // Ranges are checked by the library, whose messages name them.
 void add_options(CLI::App& app, SimulateCommandOptions& options) {
   SimulateOptions& simulate = options.simulate;
@@ -34,7 +38,7 @@ void add_options(CLI::App& app, SimulateCommandOptions& options) {
       ->type_name("FOLDER")
       ->required();
   app.add_option("--seed", simulate.street.seed, "Another seed, another street")
-      ->check(CLI::NonNegativeNumber.description(""))
+      ->check(expect_no_sign)
       ->type_name("N")
       ->capture_default_str();
   app.add_option("--length", simulate.street.length, "Length of the street [m], 30 to 1000")

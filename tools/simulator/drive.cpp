@@ -14,7 +14,7 @@ namespace {
 using std::numbers::pi;
 
 constexpr double kPeriod = 0.001;          // [s] between poses
-constexpr double kLane = -1.0;             // [m] right of the axis
+constexpr double kLane = -0.8;             // [m] right of the axis: between parked cars one keeps to the middle
 constexpr double kWheelbase = 2.9;         // [m]
 constexpr double kTrack = 1.6;             // [m]
 constexpr double kPitchByBraking = 0.005;  // [rad s^2/m] nose down

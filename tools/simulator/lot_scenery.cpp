@@ -68,7 +68,7 @@ class LotPainter {
     const double door = type.width * (type.door_axis + 0.5) / type.num_axes;
     draw_border(0, door - kGateGap / 2);
     draw_border(door + kGateGap / 2, type.width);
-    const std::size_t num_bushes = 2 + random_.index(5);
+    const std::size_t num_bushes = 3 + random_.index(6);
     for (std::size_t i = 0; i < num_bushes; ++i) {
       const double x = random_.uniform(0.6, type.width - 0.6);
       const double y = random_.uniform(1.0, side_.garden_depth - 0.6);
@@ -77,8 +77,8 @@ class LotPainter {
     }
     const double x = door > type.width / 2 ? 0.2 * type.width : 0.8 * type.width;
     const Eigen::Isometry3d place = moved(border_frame_, x, side_.garden_depth * 0.5);
-    if (random_.chance(0.35)) {
-      add_tree(make_low_tree(place, random_.uniform(0.9, 1.5), random_));
+    if (random_.chance(0.55)) {
+      add_tree(make_low_tree(place, random_.uniform(1.1, 1.9), random_));
     } else if (random_.chance(0.2)) {
       add_tree(place, random_.uniform(1.2, 2));
     }
@@ -89,10 +89,10 @@ class LotPainter {
     if (to - from < 0.4) return;
     const double choice = random_.uniform(0, 1) * 0.5 + 0.125 * static_cast<double>(lot_.house_type);
     const Eigen::Isometry3d frame = moved(border_frame_, from, 0);
-    if (choice < 0.5) {
+    if (choice < 0.58) {
       const Eigen::Vector3d size(to - from, random_.uniform(0.5, 0.9), random_.uniform(0.9, 2.0));
       add_hedge(object("hedge", frame, materials().hedge), size, random_);
-    } else if (choice < 0.68) {
+    } else if (choice < 0.72) {
       const bool is_wood = random_.chance(0.5);
       add_fence(object("fence", frame, is_wood ? materials().wood : materials().metal_fence), to - from,
                 random_.uniform(0.8, 1.2), is_wood ? 0.11 : 0.13);

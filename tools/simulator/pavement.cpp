@@ -101,7 +101,7 @@ class PavementPainter {
       add_tree(layout_.place_on_side(side_, island.middle(), distance));
       for (const double aside : {-0.55, 0.55}) {
         const Eigen::Isometry3d foot = layout_.place_on_side(side_, island.middle() + aside, distance);
-        add_bush(object("shrub", foot).with(world_.standard().leaves), random_.uniform(0.35, 0.6), random_);
+        add_bush(object("shrub", foot).with(world_.standard().leaves), random_.uniform(0.4, 0.7), random_);
       }
     }
   }
