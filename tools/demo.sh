@@ -45,3 +45,6 @@ vdbmap build "$data/velodyne" --poses "$data/poses.txt" --every 2 --offset 1 -o 
 vdbmap merge demo/map.vdb demo/odd.vdb -o demo/both.vdb
 vdbmap localize demo/map.vdb "$data/velodyne" --every 2 --offset 1 --initial demo/guesses.txt -o demo/poses.txt
 vdbmap evaluate demo/poses.txt "$data/poses.txt" --every 2 --offset 1 --plot demo/evaluation.png
+vdbmap render demo/map.vdb -o demo/street.png
+vdbmap render demo/map.vdb -o demo/plan.png --view plan --trajectory demo/poses.txt "$data/poses.txt"
+vdbmap render demo/map.vdb -o demo/drive.png --view perspective --trajectory demo/poses.txt

@@ -98,7 +98,8 @@ void add_options(CLI::App& app, RenderCommandOptions& options) {
       "Instead of the camera that suits the map. plan: X,Y,WIDTH in m. perspective: "
       "X,Y,Z,HEADING,ELEVATION[,FIELD_OF_VIEW]. orbit: HEADING,ELEVATION[,DISTANCE]. Angles in degrees, the "
       "heading from +x to the left, elevation below the horizon negative");
-  app.add_option("--level", options.render.voxel_size, "Voxel size of the level to draw [m], the finest by default")
+  app.add_option("--level", options.render.voxel_size,
+                 "Voxel size of the level to draw [m]; by default the finest, or a coarser one where points are sparse")
       ->check(CLI::PositiveNumber.description(""))
       ->type_name("S");
   app.add_flag("--plain", options.is_plain, "Only the picture: no grid, scale bar, north arrow and legend");

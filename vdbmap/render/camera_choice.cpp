@@ -8,6 +8,8 @@
 #include <stdexcept>
 #include <string>
 
+#include "vdbmap/core/parallel.h"
+
 namespace vdbmap {
 namespace {
 
@@ -124,16 +126,17 @@ Camera orbit_camera(const VoxelLevel& level, const SceneExtent& extent, const Im
   return orbit_at(extent.box.center(), numbers[0], numbers[1], numbers[2], size);
 }
 
-// How much is to be seen: rays that end neither in front of the lens nor in the sky, the middle of a street best.
+// How much is to be seen: rays that end neither in front of the lens nor in the sky, the farther the better.
 double worth_of(const RayCaster& caster, const Camera& camera) {
   constexpr double kTooNear = 4;  // [m]
+  constexpr double kFar = 60;     // [m]
   constexpr int kSteps = 24;
   double worth = 0;
   for (int j = 0; j < kSteps; ++j) {
     for (int i = 0; i < kSteps; ++i) {
       const Eigen::Vector2d pixel((i + 0.5) * camera.size().width / kSteps, (j + 0.5) * camera.size().height / kSteps);
       const auto hit = caster.first_hit(camera.ray_through(pixel));
-      if (hit) worth += hit->distance < kTooNear ? -1 : std::min(hit->distance / 20, 1.0);
+      if (hit) worth += hit->distance < kTooNear ? -1 : std::min(hit->distance / kFar, 1.0);
     }
   }
   return worth;
@@ -143,30 +146,34 @@ Camera street_at(const Eigen::Vector3d& eye, double heading_deg, const ImageSize
   return Camera::perspective(map_from_camera_at(eye, heading_deg, kStreetElevationDeg), kStreetFieldOfViewDeg, size);
 }
 
-// Of some places along and beside the long axis, with a view along it either way, the one with most to be seen.
-Camera best_street_camera(const VoxelLevel& level, const SceneExtent& extent, const ImageSize& size) {
+// Places on and beside both axes of the map, with a view along them either way.
+std::vector<Camera> street_cameras(const SceneExtent& extent, const ImageSize& size) {
   constexpr double kHeight = 7;  // [m] above the lowest voxels
-  const RayCaster caster(level);
-  const Eigen::Vector3d along(std::cos(extent.heading_deg / kDegPerRad), std::sin(extent.heading_deg / kDegPerRad), 0);
-  const Eigen::Vector3d across(-along.y(), along.x(), 0);
   const double length = extent.box.sizes().head<2>().norm();
   Eigen::Vector3d middle = extent.box.center();
   middle.z() = extent.box.min().z() + kHeight;
-  std::optional<Camera> best;
-  double most = 0;
-  for (const double back : {0.35, 0.25, 0.15}) {
-    for (const double aside : {0.0, 0.06, -0.06, 0.12, -0.12}) {
-      for (const double turn : {1.0, -1.0}) {
-        const Eigen::Vector3d eye = middle - turn * back * length * along + aside * length * across;
-        const Camera camera = street_at(eye, extent.heading_deg + (turn > 0 ? 0 : 180), size);
-        const double worth = worth_of(caster, camera);
-        if (best && worth <= most) continue;
-        best = camera;
-        most = worth;
+  std::vector<Camera> cameras;
+  for (const double turn_deg : {0.0, 180.0, 90.0, -90.0}) {
+    const double heading = (extent.heading_deg + turn_deg) / kDegPerRad;
+    const Eigen::Vector3d along(std::cos(heading), std::sin(heading), 0);
+    const Eigen::Vector3d across(-along.y(), along.x(), 0);
+    for (const double back : {0.35, 0.25, 0.15, 0.05}) {
+      for (const double aside : {0.0, 0.04, -0.04, 0.08, -0.08, 0.12, -0.12}) {
+        const Eigen::Vector3d eye = middle - back * length * along + aside * length * across;
+        cameras.push_back(street_at(eye, extent.heading_deg + turn_deg, size));
       }
     }
   }
-  return *best;
+  return cameras;
+}
+
+Camera best_street_camera(const VoxelLevel& level, const SceneExtent& extent, const ImageSize& size) {
+  const std::vector<Camera> cameras = street_cameras(extent, size);
+  const RayCaster caster(level);
+  std::vector<double> worths(cameras.size());
+  parallel_for(cameras.size(), [&](std::size_t i) { worths[i] = worth_of(caster, cameras[i]); });
+  const auto best = std::max_element(worths.begin(), worths.end());
+  return cameras[static_cast<std::size_t>(best - worths.begin())];
 }
 
 // From behind and above the first place of the path, towards where it is some way on.

@@ -6,8 +6,10 @@
 #include <cmath>
 #include <limits>
 #include <numbers>
+#include <numeric>
 #include <stdexcept>
 
+#include "vdbmap/core/parallel.h"
 #include "vdbmap/render/decoration.h"
 #include "vdbmap/render/overlay.h"
 #include "vdbmap/render/plot_area.h"
@@ -19,9 +21,34 @@ namespace {
 constexpr std::array kPathColors = {rgb8(0xe3241f), rgb8(0x18a02a), rgb8(0x1f5fe0), rgb8(0xf08a00), rgb8(0x8a2be2)};
 constexpr std::array kPointColors = {rgb8(0xff1fa8), rgb8(0x00d0e0), rgb8(0xfff000)};
 
-const VoxelLevel& chosen_level(const VoxelMap& map, double voxel_size) {
-  if (map.levels.empty()) throw std::invalid_argument("the map has no levels");
-  if (voxel_size == 0) return map.finest();
+// How many of some rays of the camera meet a voxel.
+std::size_t num_covered(const VoxelLevel& level, const Camera& camera) {
+  constexpr int kSteps = 120;
+  const RayCaster caster(level);
+  std::array<std::size_t, kSteps> by_row{};
+  parallel_for(kSteps, [&](std::size_t row) {
+    for (int i = 0; i < kSteps; ++i) {
+      const Eigen::Vector2d pixel((i + 0.5) * camera.size().width / kSteps,
+                                  (static_cast<double>(row) + 0.5) * camera.size().height / kSteps);
+      by_row[row] += caster.is_blocked(camera.ray_through(pixel), {}) ? 1 : 0;
+    }
+  });
+  return std::accumulate(by_row.begin(), by_row.end(), std::size_t{0});
+}
+
+// The finest level that is no dust: of sparse points one sees nothing but gaps, and a coarser level tells more.
+const VoxelLevel& suitable_level(const VoxelMap& map, const Camera& camera) {
+  constexpr std::size_t kMostGaps = 4;  // times as much is covered by the next level
+  std::size_t i = 0;
+  while (i + 1 < map.levels.size() &&
+         kMostGaps * num_covered(map.levels[i], camera) < num_covered(map.levels[i + 1], camera)) {
+    ++i;
+  }
+  return map.levels[i];
+}
+
+const VoxelLevel& chosen_level(const VoxelMap& map, double voxel_size, const Camera& camera) {
+  if (voxel_size == 0) return suitable_level(map, camera);
   if (const VoxelLevel* level = find_level(map, voxel_size)) return *level;
   throw std::invalid_argument("the map has no level of " + tick_text(voxel_size, 0.001) + " m");
 }
@@ -105,13 +132,14 @@ bool is_in_voxel(const VoxelLevel& level, const Camera& camera) {
 
 RenderResult render(const VoxelMap& map, const RenderOptions& options, const RenderOverlays& overlays) {
   Image(options.size.width, options.size.height);  // refuses sizes before any work
-  const VoxelLevel& level = chosen_level(map, options.voxel_size);
-  const VoxelColors colors(map, level, options.color_by);
+  if (map.levels.empty()) throw std::invalid_argument("the map has no levels");
   const std::vector<PathOverlay> paths = paths_of(overlays, map.frame.anchor);
   const std::vector<PointsOverlay> points = points_of(overlays, map.frame.anchor);
   const std::vector<Eigen::Vector3d> path = paths.empty() ? std::vector<Eigen::Vector3d>{} : paths[0].pieces[0];
   const Camera camera =
-      choose_camera(level, options.view, options.size, local_numbers(options, map.frame.anchor), path);
+      choose_camera(map.finest(), options.view, options.size, local_numbers(options, map.frame.anchor), path);
+  const VoxelLevel& level = chosen_level(map, options.voxel_size, camera);
+  const VoxelColors colors(map, level, options.color_by);
 
   VoxelView view = view_voxels(level, colors, camera);
   if (options.has_decoration && options.view == View::kPlan) draw_metre_grid(view.image, camera, map.frame.anchor);

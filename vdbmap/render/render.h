@@ -19,7 +19,7 @@ struct RenderOptions {
   std::optional<ColorBy> color_by;  ///< without: the colours of the points where the map has them, else height
   /// Numbers of the camera as choose_camera() takes them, places in the original system; none: chosen.
   std::vector<double> camera;
-  double voxel_size = 0;       ///< [m] of the level that is drawn; 0: the finest
+  double voxel_size = 0;       ///< [m] of the level that is drawn; 0: the finest that is no dust
   bool has_decoration = true;  ///< grid, scale bar, north arrow and legend
 };
 

@@ -20,6 +20,7 @@ struct SkyRay {
 };
 
 // Two rings of four about the normal, 25 and 58 degrees off it: the middles of equal shares of cosine-weighted light.
+// Even and odd ones are two to a ring each.
 constexpr std::array<SkyRay, 8> kSkyRays = {{{0.42, 0.0, 0.91},
                                              {0.0, 0.42, 0.91},
                                              {-0.42, 0.0, 0.91},
@@ -30,17 +31,20 @@ constexpr std::array<SkyRay, 8> kSkyRays = {{{0.42, 0.0, 0.91},
                                              {0.60, -0.60, 0.53}}};
 
 // 0 where everything about the voxel is closed, 1 where it is open; near obstacles count more than far ones.
-double openness(const RayCaster& caster, const Eigen::Vector3d& origin, const Eigen::Vector3d& normal, double reach) {
+double openness(const RayCaster& caster, const Eigen::Vector3d& origin, const Eigen::Vector3d& normal, double reach,
+                SkyRays rays) {
   const Eigen::Vector3d side = std::abs(normal.z()) < 0.7 ? Eigen::Vector3d::UnitZ() : Eigen::Vector3d::UnitX();
   const Eigen::Vector3d a = side.cross(normal).normalized();
   const Eigen::Vector3d b = normal.cross(a);
+  const std::size_t step = rays == SkyRays::kAll ? 1 : 2;
   double open = 0;
-  for (const SkyRay& ray : kSkyRays) {
+  for (std::size_t i = rays == SkyRays::kOddHalf ? 1 : 0; i < kSkyRays.size(); i += step) {
+    const SkyRay& ray = kSkyRays[i];
     const Eigen::Vector3d direction = ray.along_a * a + ray.along_b * b + ray.along_normal * normal;
     const auto hit = caster.first_hit({origin, direction}, {0, reach});
     open += hit ? hit->distance / reach : 1;
   }
-  return open / kSkyRays.size();
+  return open * static_cast<double>(step) / kSkyRays.size();
 }
 
 LinearColor mixed(const LinearColor& a, const LinearColor& b, double share) {
@@ -60,10 +64,10 @@ Lighting Lighting::for_camera(const Camera& camera) {
 }
 
 LightOnVoxel light_on_voxel(const RayCaster& caster, const Eigen::Vector3d& center, double voxel_size,
-                            const Eigen::Vector3d& normal, const Lighting& lighting) {
+                            const Eigen::Vector3d& normal, const Lighting& lighting, SkyRays rays) {
   const Eigen::Vector3d origin = center + 1.3 * voxel_size * normal;  // above the roughness of its own surface
   LightOnVoxel light;
-  light.sky_share = openness(caster, origin, normal, lighting.sky_reach);
+  light.sky_share = openness(caster, origin, normal, lighting.sky_reach, rays);
   light.is_in_shade =
       normal.dot(lighting.to_sun) <= 0 || caster.is_blocked({origin, lighting.to_sun}, {0, lighting.shadow_reach});
   return light;

@@ -21,9 +21,13 @@ struct LightOnVoxel {
   bool is_in_shade = false;  ///< whether something hides the sun
 };
 
+/// How many rays look for the sky. Of voxels smaller than a pixel each sends one half of them, neighbours the other
+/// half.
+enum class SkyRays { kAll, kEvenHalf, kOddHalf };
+
 /// Sends rays from a voxel whose surface has this normal.
 LightOnVoxel light_on_voxel(const RayCaster& caster, const Eigen::Vector3d& center, double voxel_size,
-                            const Eigen::Vector3d& normal, const Lighting& lighting);
+                            const Eigen::Vector3d& normal, const Lighting& lighting, SkyRays rays = SkyRays::kAll);
 
 /// Sunlight and skylight that fall on a face with this normal, as a factor of its colour.
 LinearColor light_on_face(const LightOnVoxel& voxel, const Eigen::Vector3d& normal, const Lighting& lighting);

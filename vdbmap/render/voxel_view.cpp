@@ -177,7 +177,8 @@ class FaceLighter {
       sum += normals[face];
     });
     // The surroundings are looked at once a voxel, in the mean direction of its faces.
-    const LightOnVoxel light = light_on_voxel(caster_, center, level_.voxel_size(), sum.normalized(), lighting_);
+    const LightOnVoxel light =
+        light_on_voxel(caster_, center, level_.voxel_size(), sum.normalized(), lighting_, rays_for(voxel, center));
     for_each_bit(seen, [&](VoxelFace face) {
       const LinearColor falls_in = light_on_face(light, normals[face], lighting_);
       lit[table_.number(static_cast<FaceCode>(6 * record + face))] = color.cwiseProduct(falls_in);
@@ -185,6 +186,14 @@ class FaceLighter {
   }
 
  private:
+  SkyRays rays_for(const VoxelIndex& voxel, const Eigen::Vector3d& center) const {
+    constexpr double kSmall = 1.5;  // [pixels]
+    const double distance = (center - camera_.map_from_camera().translation()).norm();
+    const double pixel = camera_.is_perspective() ? distance * camera_.pixel_width() : camera_.pixel_width();
+    if (level_.voxel_size() > kSmall * pixel) return SkyRays::kAll;
+    return ((voxel.x() ^ voxel.y() ^ voxel.z()) & 1) == 0 ? SkyRays::kEvenHalf : SkyRays::kOddHalf;
+  }
+
   template <typename Body>
   static void for_each_bit(unsigned bits, const Body& body) {
     for (; bits != 0; bits &= bits - 1) body(static_cast<VoxelFace>(std::countr_zero(bits)));

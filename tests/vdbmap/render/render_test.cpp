@@ -283,6 +283,21 @@ TEST(Render, PlacesAreInTheOriginalSystem) {
   EXPECT_EQ(png_of(render(far, options).image), at_origin);
 }
 
+TEST(Render, SparsePointsAreDrawnAtACoarserLevel) {
+  // A point a metre on 200 m x 200 m: voxels of 10 cm are far smaller than a pixel, those of 1 m touch each other.
+  PointCloud cloud;
+  for (int i = 0; i < 200; ++i) {
+    for (int j = 0; j < 200; ++j) cloud.positions.emplace_back(i + 0.5, j + 0.5, 0.05);
+  }
+  const VoxelMap map = build_map(cloud);
+  RenderOptions options = small(View::kPlan);
+  const std::string chosen = png_of(render(map, options).image);
+  options.voxel_size = 1.0;
+  EXPECT_EQ(png_of(render(map, options).image), chosen);
+  options.voxel_size = 0.1;
+  EXPECT_NE(png_of(render(map, options).image), chosen);
+}
+
 TEST(Render, ACameraInsideOfAVoxelIsNoted) {
   RenderOptions options = small(View::kPerspective);
   options.camera = {0.55, 0.55, 0.55, 0, 0};
