@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "registration/odometry/odometry.h"
 
+#include <algorithm>
 #include <cmath>
 #include <limits>
 #include <sstream>
@@ -14,14 +15,17 @@ namespace {
 
 constexpr std::size_t kMinPoints = 20;  // aligned: fewer do not hold a pose
 
-// Of the aligned points, share within half a voxel of the map. On KITTI streets scans keep above 0.73 (64 rings and 16)
-// where they belong, and below 0.55 where a gap made them rest a few metres off.
-constexpr double kTrustedInlierShare = 0.7;  // below, a wide search is tried; and what that finds must reach it
-constexpr double kMinInlierShare = 0.6;
+// Share of the aligned points within half a voxel of the map. It depends on the scanner, its speed and how long it has
+// been here: on KITTI streets scans where they belong have 0.55 (16 rings, second scan, 14 m/s) to 0.99; scans of
+// another street reach 0.31, and scans that a gap made rest a few metres off 0.4 to 0.53 of 0.97 before.
+constexpr double kMinInlierShare = 0.4;
+constexpr double kMinKeptShare = 0.7;  // of the share that the scan before had
 
 double inlier_share(const PointToPointResult& result, std::size_t num_points) {
   return static_cast<double>(result.matches.num_inliers) / static_cast<double>(num_points);
 }
+
+std::string percent(double share) { return std::to_string(std::lround(100 * share)) + " %"; }
 
 std::string reason_for_few(const PointCloud& scan, std::size_t num_points, const OdometryOptions& options) {
   if (scan.empty()) return "it holds no points";
@@ -160,8 +164,10 @@ void Odometry::straighten_first_scan(const Sample& second, Alignment& alignment)
   first_sample_.reset();
 }
 
+double Odometry::min_inlier_share() const { return std::max(kMinInlierShare, kMinKeptShare * last_inlier_share_); }
+
 void Odometry::search_if_lost(Alignment& alignment, OdometryStep& step) const {
-  if (inlier_share(alignment.result, step.num_points) >= kTrustedInlierShare) return;
+  if (inlier_share(alignment.result, step.num_points) >= min_inlier_share()) return;
   const PointToPointResult found = search_widely(alignment.aligned_points, map_, step.first_from_scan,
                                                  alignment_options(options_.initial_threshold / 2));
   if (found.matches.num_inliers <= alignment.result.matches.num_inliers) return;
@@ -173,9 +179,9 @@ void Odometry::finish(const Alignment& alignment, OdometryStep& step) {
   const PointToPointResult& result = alignment.result;
   step.num_iterations = result.num_iterations;
   step.inlier_share = inlier_share(result, step.num_points);
-  if (step.inlier_share < (step.was_refound ? kTrustedInlierShare : kMinInlierShare)) {
-    step.reason = "only " + std::to_string(std::lround(100 * step.inlier_share)) +
-                  " % of its points lie on those of the scans before";
+  if (step.inlier_share < min_inlier_share()) {
+    step.reason = "only " + percent(step.inlier_share) + " of its points lie on those of the scans before, expected " +
+                  percent(min_inlier_share());
     return;
   }
   const auto covariance =
@@ -189,6 +195,7 @@ void Odometry::finish(const Alignment& alignment, OdometryStep& step) {
   map_.insert(moved(alignment.points, result.map_from_scan));
   map_.forget_far(result.map_from_scan.translation());
   first_from_registered_ = result.map_from_scan;
+  last_inlier_share_ = step.inlier_share;
   // A jump says nothing about the speed: how long the gap was is mostly unknown.
   if (!step.was_refound) twist_ = twist_of_motion(step.previous_from_scan) / seconds_since_registered_;
   seconds_since_registered_ = 0;

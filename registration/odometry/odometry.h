@@ -96,6 +96,7 @@ class Odometry {
   Alignment align(const Sample& sample, const Vector6d& twist, const Eigen::Isometry3d& guess, double sigma) const;
   void start(const Sample& sample, const Alignment& alignment);
   void straighten_first_scan(const Sample& second, Alignment& alignment);
+  double min_inlier_share() const;
   void search_if_lost(Alignment& alignment, OdometryStep& step) const;
   void finish(const Alignment& alignment, OdometryStep& step);
 
@@ -107,6 +108,7 @@ class Odometry {
   Eigen::Isometry3d first_from_registered_ = Eigen::Isometry3d::Identity();
   double seconds_since_registered_ = 0;
   Vector6d twist_ = Vector6d::Zero();  // per second
+  double last_inlier_share_ = 0;       // of the last registered scan
 };
 
 }  // namespace vdbmap::registration

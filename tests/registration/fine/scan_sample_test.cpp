@@ -33,6 +33,14 @@ TEST(ScanSample, KeepsTheFirstPointOfEveryCubeInTheirOrder) {
   }
 }
 
+TEST(ScanSample, IndicesLeadToTheSamePoints) {
+  const Eigen::AlignedBox3d box(Eigen::Vector3d(-20, -15, -3), Eigen::Vector3d(25, 20, 5));
+  const std::vector<Eigen::Vector3d> points = test::random_points(50'000, box, 2);
+  std::vector<Eigen::Vector3d> sample;
+  for (const std::uint32_t index : sample_indices(points, 1.5, {2, 20})) sample.push_back(points[index]);
+  EXPECT_EQ(sample, sample_points(points, 1.5, {2, 20}));
+}
+
 TEST(ScanSample, UsesPointsFromTheLeastToTheGreatestRange) {
   std::vector<Eigen::Vector3d> points;
   for (int i = 0; i < 20; ++i) points.emplace_back(0, -i, 0);
