@@ -78,8 +78,8 @@ void OdometryOptions::check() const {
   require(convergence > 0, "convergence", convergence, "more than 0");
 }
 
-std::vector<Eigen::Vector3d> Odometry::Sample::deskewed(const Vector6d& twist) const {
-  return times.empty() || twist.isZero(0) ? positions : deskew_points(positions, times, {first_time, twist});
+std::vector<Eigen::Vector3d> Odometry::Sample::deskewed(const Vector6d& twist, double reference_time) const {
+  return times.empty() || twist.isZero(0) ? positions : deskew_points(positions, times, {reference_time, twist});
 }
 
 Odometry::Odometry(const OdometryOptions& options)
@@ -96,6 +96,11 @@ Odometry::Sample Odometry::sample_of(const PointCloud& scan, const ScanTiming& t
        sample_indices(scan.positions, options_.map_spacing * options_.voxel_size, options_.range)) {
     sample.positions.push_back(scan.positions[i]);
     if (has_times) sample.times.push_back(scan.times[i]);
+  }
+  if (!sample.times.empty()) {
+    double sum = 0;
+    for (const double time : sample.times) sum += time - sample.first_time;
+    sample.lead = sum / static_cast<double>(sample.times.size());
   }
   return sample;
 }
@@ -114,7 +119,7 @@ Odometry::Alignment Odometry::align(const Sample& sample, const Vector6d& twist,
                                     double sigma) const {
   constexpr RangeLimits kAll{0, std::numeric_limits<double>::infinity()};
   Alignment alignment;
-  alignment.points = sample.deskewed(twist);
+  alignment.points = sample.deskewed(twist, sample.first_time + sample.lead);
   alignment.aligned_points = sample_points(alignment.points, options_.registration_spacing * options_.voxel_size, kAll);
   alignment.result = align_points(alignment.aligned_points, map_, guess, alignment_options(sigma));
   return alignment;
@@ -123,42 +128,44 @@ Odometry::Alignment Odometry::align(const Sample& sample, const Vector6d& twist,
 OdometryStep Odometry::register_scan(const PointCloud& scan) {
   const ScanTiming timing = clock_.next(scan);
   const Sample sample = sample_of(scan, timing);
+  motion_.begin_scan(timing.interval, sample.lead);
   OdometryStep step;
   step.has_time = timing.first.has_value();
   step.time_problem = timing.problem;
   step.motion.reference_time = sample.first_time;
   step.sigma = threshold_.sigma();
-  seconds_since_registered_ += timing.interval;
-  step.first_from_scan = first_from_registered_ * motion_of_twist(seconds_since_registered_ * twist_);
+  step.first_from_scan = motion_.at_first_point(motion_.predicted_pose());
 
-  Alignment alignment = align(sample, twist_, step.first_from_scan, step.sigma);
+  Alignment alignment = align(sample, motion_.twist(), motion_.predicted_pose(), step.sigma);
   step.num_points = alignment.aligned_points.size();
   if (step.num_points < kMinPoints) {
     step.reason = reason_for_few(scan, step.num_points, options_);
   } else if (map_.empty()) {
-    start(sample, alignment);
+    start(sample);
   } else {
     straighten_first_scan(sample, alignment);
     search_if_lost(alignment, step);
-    finish(alignment, step);
+    accept(alignment, step);
   }
   return step;
 }
 
-void Odometry::start(const Sample& sample, const Alignment& alignment) {
-  map_.insert(alignment.points);
+void Odometry::start(const Sample& sample) {
+  map_.insert(sample.positions);
+  motion_.set_pose(Eigen::Isometry3d::Identity());
   if (!sample.times.empty()) first_sample_ = sample;
-  seconds_since_registered_ = 0;
 }
 
-// The first scan was taken as if the sensor had stood still. Now that its motion is known the map begins anew.
+// The first scan was taken as if the sensor had stood still. Now that its motion is known the map begins anew, in the
+// frame of that scan's first point.
 void Odometry::straighten_first_scan(const Sample& second, Alignment& alignment) {
-  constexpr int kRounds = 3;
+  constexpr int kRounds = 3;  // each takes away most of the error of the one before
   if (!first_sample_) return;
   for (int round = 0; round < kRounds; ++round) {
-    const Vector6d twist = twist_of_motion(alignment.result.map_from_scan) / seconds_since_registered_;
+    const Vector6d twist = motion_.twist_to(alignment.result.map_from_scan);
+    motion_.correct_registered(motion_of_twist(first_sample_->lead * twist));
     map_ = LocalMap(map_options(options_));
-    map_.insert(first_sample_->deskewed(twist));
+    map_.insert(first_sample_->deskewed(twist, first_sample_->first_time));
     alignment = align(second, twist, alignment.result.map_from_scan, threshold_.sigma());
   }
   first_sample_.reset();
@@ -168,38 +175,46 @@ double Odometry::min_inlier_share() const { return std::max(kMinInlierShare, kMi
 
 void Odometry::search_if_lost(Alignment& alignment, OdometryStep& step) const {
   if (inlier_share(alignment.result, step.num_points) >= min_inlier_share()) return;
-  const PointToPointResult found = search_widely(alignment.aligned_points, map_, step.first_from_scan,
+  const PointToPointResult found = search_widely(alignment.aligned_points, map_, motion_.predicted_pose(),
                                                  alignment_options(options_.initial_threshold / 2));
   if (found.matches.num_inliers <= alignment.result.matches.num_inliers) return;
   alignment.result = found;
   step.was_refound = true;
 }
 
-void Odometry::finish(const Alignment& alignment, OdometryStep& step) {
-  const PointToPointResult& result = alignment.result;
-  step.num_iterations = result.num_iterations;
-  step.inlier_share = inlier_share(result, step.num_points);
+void Odometry::accept(const Alignment& alignment, OdometryStep& step) {
+  const Eigen::Isometry3d& map_from_scan = alignment.result.map_from_scan;
+  step.num_iterations = alignment.result.num_iterations;
+  step.inlier_share = inlier_share(alignment.result, step.num_points);
   if (step.inlier_share < min_inlier_share()) {
     step.reason = "only " + percent(step.inlier_share) + " of its points lie on those of the scans before, expected " +
                   percent(min_inlier_share());
     return;
   }
-  const auto covariance =
-      match_covariance(alignment.aligned_points, map_, result.map_from_scan, alignment_options(step.sigma).limits);
-  if (covariance) step.covariance = with_axes_of(*covariance, first_from_registered_.linear());
-  if (!step.was_refound) threshold_.add_deviation(step.first_from_scan.inverse() * result.map_from_scan);
-  step.jump = (result.map_from_scan.translation() - step.first_from_scan.translation()).norm();
-  step.first_from_scan = result.map_from_scan;
-  step.previous_from_scan = first_from_registered_.inverse() * result.map_from_scan;
+  const Eigen::Isometry3d predicted_from_found = motion_.predicted_pose().inverse() * map_from_scan;
+  step.jump = predicted_from_found.translation().norm();
+  // A jump says nothing about the speed and its changes: how long the gap was is mostly unknown.
+  if (!step.was_refound) {
+    threshold_.add_deviation(predicted_from_found);
+    motion_.set_twist(motion_.twist_to(map_from_scan));
+  }
+  motion_.set_pose(map_from_scan);
+  add_to_map(alignment, step);
+}
 
-  map_.insert(moved(alignment.points, result.map_from_scan));
-  map_.forget_far(result.map_from_scan.translation());
-  first_from_registered_ = result.map_from_scan;
+void Odometry::add_to_map(const Alignment& alignment, OdometryStep& step) {
+  const Eigen::Isometry3d& map_from_scan = alignment.result.map_from_scan;
+  const auto covariance =
+      match_covariance(alignment.aligned_points, map_, map_from_scan, alignment_options(step.sigma).limits);
+  if (covariance) step.covariance = with_axes_of(*covariance, first_from_registered_.linear());
+  step.first_from_scan = motion_.at_first_point(map_from_scan);
+  step.previous_from_scan = first_from_registered_.inverse() * step.first_from_scan;
+  if (step.has_time) step.motion.twist = motion_.twist();
+
+  map_.insert(moved(alignment.points, map_from_scan));
+  map_.forget_far(map_from_scan.translation());
+  first_from_registered_ = step.first_from_scan;
   last_inlier_share_ = step.inlier_share;
-  // A jump says nothing about the speed: how long the gap was is mostly unknown.
-  if (!step.was_refound) twist_ = twist_of_motion(step.previous_from_scan) / seconds_since_registered_;
-  seconds_since_registered_ = 0;
-  if (step.has_time) step.motion.twist = twist_;
 }
 
 }  // namespace vdbmap::registration

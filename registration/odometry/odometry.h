@@ -15,6 +15,7 @@
 #include "registration/odometry/local_map.h"
 #include "registration/odometry/point_to_point.h"
 #include "registration/odometry/scan_clock.h"
+#include "registration/odometry/sensor_motion.h"
 #include "vdbmap/core/point_cloud.h"
 
 namespace vdbmap::registration {
@@ -79,12 +80,13 @@ class Odometry {
   struct Sample {
     std::vector<Eigen::Vector3d> positions;
     std::vector<double> times;
-    double first_time = 0;
+    double first_time = 0;  // [s] of the scan
+    double lead = 0;        // [s] from the first time to the mean one
 
-    std::vector<Eigen::Vector3d> deskewed(const Vector6d& twist) const;
+    std::vector<Eigen::Vector3d> deskewed(const Vector6d& twist, double reference_time) const;
   };
 
-  // The pose of a scan, and its points, deskewed and thinned as for the map.
+  // The pose of a scan at its mean time, and its points, deskewed to it and thinned as for the map.
   struct Alignment {
     PointToPointResult result;
     std::vector<Eigen::Vector3d> points;
@@ -94,21 +96,21 @@ class Odometry {
   Sample sample_of(const PointCloud& scan, const ScanTiming& timing) const;
   PointToPointOptions alignment_options(double sigma) const;
   Alignment align(const Sample& sample, const Vector6d& twist, const Eigen::Isometry3d& guess, double sigma) const;
-  void start(const Sample& sample, const Alignment& alignment);
+  void start(const Sample& sample);
   void straighten_first_scan(const Sample& second, Alignment& alignment);
   double min_inlier_share() const;
   void search_if_lost(Alignment& alignment, OdometryStep& step) const;
-  void finish(const Alignment& alignment, OdometryStep& step);
+  void accept(const Alignment& alignment, OdometryStep& step);
+  void add_to_map(const Alignment& alignment, OdometryStep& step);
 
   OdometryOptions options_;
   ScanClock clock_;
   AdaptiveThreshold threshold_;
   LocalMap map_;
   std::optional<Sample> first_sample_;  // until its motion is known
-  Eigen::Isometry3d first_from_registered_ = Eigen::Isometry3d::Identity();
-  double seconds_since_registered_ = 0;
-  Vector6d twist_ = Vector6d::Zero();  // per second
-  double last_inlier_share_ = 0;       // of the last registered scan
+  SensorMotion motion_;
+  Eigen::Isometry3d first_from_registered_ = Eigen::Isometry3d::Identity();  // of the last registered scan
+  double last_inlier_share_ = 0;                                             // of the last registered scan
 };
 
 }  // namespace vdbmap::registration
