@@ -19,7 +19,8 @@ constexpr std::size_t kMinPoints = 20;  // aligned: fewer do not hold a pose
 // been here: on KITTI streets scans where they belong have 0.55 (16 rings, second scan, 14 m/s) to 0.99; scans of
 // another street reach 0.31, and scans that a gap made rest a few metres off 0.4 to 0.53 of 0.97 before.
 constexpr double kMinInlierShare = 0.4;
-constexpr double kMinKeptShare = 0.7;  // of the share that the scan before had
+constexpr double kMinKeptShare = 0.7;     // of the share that the scan before had
+constexpr double kMinRefoundShare = 0.8;  // the same after a wide search, which finds the best of many wrong places too
 
 double inlier_share(const PointToPointResult& result, std::size_t num_points) {
   return static_cast<double>(result.matches.num_inliers) / static_cast<double>(num_points);
@@ -48,6 +49,13 @@ const OdometryOptions& checked(const OdometryOptions& options) {
 std::vector<Eigen::Vector3d> moved(std::vector<Eigen::Vector3d> points, const Eigen::Isometry3d& target_from_points) {
   for (Eigen::Vector3d& point : points) point = target_from_points * point;
   return points;
+}
+
+// Of numbers near `origin`, without loss.
+double mean_of(const std::vector<double>& numbers, double origin) {
+  double sum = 0;
+  for (const double number : numbers) sum += number - origin;
+  return origin + sum / static_cast<double>(numbers.size());
 }
 
 // The covariance of a pose by the axes of another frame.
@@ -97,11 +105,7 @@ Odometry::Sample Odometry::sample_of(const PointCloud& scan, const ScanTiming& t
     sample.positions.push_back(scan.positions[i]);
     if (has_times) sample.times.push_back(scan.times[i]);
   }
-  if (!sample.times.empty()) {
-    double sum = 0;
-    for (const double time : sample.times) sum += time - sample.first_time;
-    sample.lead = sum / static_cast<double>(sample.times.size());
-  }
+  sample.lead = sample.times.empty() ? last_lead_ : mean_of(sample.times, sample.first_time) - sample.first_time;
   return sample;
 }
 
@@ -129,6 +133,7 @@ OdometryStep Odometry::register_scan(const PointCloud& scan) {
   const ScanTiming timing = clock_.next(scan);
   const Sample sample = sample_of(scan, timing);
   motion_.begin_scan(timing.interval, sample.lead);
+  last_lead_ = sample.lead;
   OdometryStep step;
   step.has_time = timing.first.has_value();
   step.time_problem = timing.problem;
@@ -144,7 +149,7 @@ OdometryStep Odometry::register_scan(const PointCloud& scan) {
     start(sample);
   } else {
     straighten_first_scan(sample, alignment);
-    search_if_lost(alignment, step);
+    search_if_lost(timing.usual_interval, alignment, step);
     accept(alignment, step);
   }
   return step;
@@ -171,24 +176,32 @@ void Odometry::straighten_first_scan(const Sample& second, Alignment& alignment)
   first_sample_.reset();
 }
 
-double Odometry::min_inlier_share() const { return std::max(kMinInlierShare, kMinKeptShare * last_inlier_share_); }
+double Odometry::min_inlier_share(const OdometryStep& step) const {
+  const double kept = step.was_refound ? kMinRefoundShare : kMinKeptShare;
+  return std::max(kMinInlierShare, kept * last_inlier_share_);
+}
 
-void Odometry::search_if_lost(Alignment& alignment, OdometryStep& step) const {
-  if (inlier_share(alignment.result, step.num_points) >= min_inlier_share()) return;
-  const PointToPointResult found = search_widely(alignment.aligned_points, map_, motion_.predicted_pose(),
-                                                 alignment_options(options_.initial_threshold / 2));
-  if (found.matches.num_inliers <= alignment.result.matches.num_inliers) return;
-  alignment.result = found;
-  step.was_refound = true;
+// Around where the motion leads to, then, in case a time stamp made that senseless, to where it leads usually.
+void Odometry::search_if_lost(double usual_interval, Alignment& alignment, OdometryStep& step) const {
+  for (const Eigen::Isometry3d& guess : {motion_.predicted_pose(), motion_.predicted_pose(usual_interval)}) {
+    if (inlier_share(alignment.result, step.num_points) >= min_inlier_share(step)) return;
+    const PointToPointResult rough =
+        search_widely(alignment.aligned_points, map_, guess, alignment_options(options_.initial_threshold / 2));
+    const PointToPointResult found =
+        align_points(alignment.aligned_points, map_, rough.map_from_scan, alignment_options(step.sigma));
+    if (found.matches.num_inliers <= alignment.result.matches.num_inliers) continue;
+    alignment.result = found;
+    step.was_refound = true;
+  }
 }
 
 void Odometry::accept(const Alignment& alignment, OdometryStep& step) {
   const Eigen::Isometry3d& map_from_scan = alignment.result.map_from_scan;
   step.num_iterations = alignment.result.num_iterations;
   step.inlier_share = inlier_share(alignment.result, step.num_points);
-  if (step.inlier_share < min_inlier_share()) {
+  if (step.inlier_share < min_inlier_share(step)) {
     step.reason = "only " + percent(step.inlier_share) + " of its points lie on those of the scans before, expected " +
-                  percent(min_inlier_share());
+                  percent(min_inlier_share(step));
     return;
   }
   const Eigen::Isometry3d predicted_from_found = motion_.predicted_pose().inverse() * map_from_scan;

@@ -81,7 +81,7 @@ class Odometry {
     std::vector<Eigen::Vector3d> positions;
     std::vector<double> times;
     double first_time = 0;  // [s] of the scan
-    double lead = 0;        // [s] from the first time to the mean one
+    double lead = 0;        // [s] from the first time to the mean one; without usable times that of a scan before
 
     std::vector<Eigen::Vector3d> deskewed(const Vector6d& twist, double reference_time) const;
   };
@@ -98,8 +98,8 @@ class Odometry {
   Alignment align(const Sample& sample, const Vector6d& twist, const Eigen::Isometry3d& guess, double sigma) const;
   void start(const Sample& sample);
   void straighten_first_scan(const Sample& second, Alignment& alignment);
-  double min_inlier_share() const;
-  void search_if_lost(Alignment& alignment, OdometryStep& step) const;
+  double min_inlier_share(const OdometryStep& step) const;
+  void search_if_lost(double usual_interval, Alignment& alignment, OdometryStep& step) const;
   void accept(const Alignment& alignment, OdometryStep& step);
   void add_to_map(const Alignment& alignment, OdometryStep& step);
 
@@ -110,6 +110,7 @@ class Odometry {
   std::optional<Sample> first_sample_;  // until its motion is known
   SensorMotion motion_;
   Eigen::Isometry3d first_from_registered_ = Eigen::Isometry3d::Identity();  // of the last registered scan
+  double last_lead_ = 0;                                                     // [s] of a scan with usable times
   double last_inlier_share_ = 0;                                             // of the last registered scan
 };
 

@@ -17,6 +17,11 @@ namespace {
 
 constexpr std::size_t kMinMatches = 6;  // as many as unknowns
 constexpr std::size_t kPointsPerCluster = 32;
+
+// Points near each other have the same errors of the map in their residuals, more than the clusters show: on KITTI
+// streets, with 64 rings and with 16, and on synthetic ones the squares of the errors are 16 to 19 times as large.
+constexpr double kCorrelation = 17;
+
 constexpr std::size_t kPointsPerPart = 256;  // summed one after the other, whatever the number of threads
 
 // A point and its neighbour: residual r, Jacobian J = (-[arm]x, I).
@@ -132,7 +137,8 @@ std::optional<Matrix6d> match_covariance(std::span<const Eigen::Vector3d> points
   const Eigen::FullPivLU<Matrix6d> solver(sums.information);
   if (sums.num_matches < kMinMatches || !solver.isInvertible()) return std::nullopt;
   const Matrix6d inverse = solver.inverse();
-  const Matrix6d covariance = inverse * scatter_of(points_in_scan, map, map_from_scan, limits) * inverse.transpose();
+  const Matrix6d covariance =
+      kCorrelation * inverse * scatter_of(points_in_scan, map, map_from_scan, limits) * inverse.transpose();
   return 0.5 * (covariance + covariance.transpose());
 }
 

@@ -9,8 +9,9 @@
 namespace vdbmap::registration {
 namespace {
 
-constexpr double kMaxDuration = 1.0;  // [s] scanners turn more than once a second; longer, no motion is constant
-constexpr double kSameStart = 0.1;    // of the duration: scans that begin so close have an epoch each
+constexpr double kMaxDuration = 1.0;      // [s] scanners turn more than once a second; longer, no motion is constant
+constexpr double kMaxUsualInterval = 10;  // durations; a longer one is a gap
+constexpr double kSameStart = 0.1;        // of the duration: scans that begin so close have an epoch each
 
 struct TimeSpan {
   double first = 0;
@@ -48,6 +49,7 @@ std::string problem_of(const PointCloud& scan, TimeSpan& span) {
 ScanTiming ScanClock::next(const PointCloud& scan) {
   ScanTiming timing;
   timing.interval = last_interval_;
+  timing.usual_interval = last_interval_;
   if (scan.times.empty()) return timing;
 
   TimeSpan span;
@@ -62,7 +64,7 @@ ScanTiming ScanClock::next(const PointCloud& scan) {
   }
   timing.first = span.first;
   timing.interval = step > kSameStart * span.duration() ? step : span.duration();
-  last_interval_ = timing.interval;
+  if (timing.interval <= kMaxUsualInterval * span.duration()) last_interval_ = timing.interval;
   return timing;
 }
 

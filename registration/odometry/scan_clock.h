@@ -12,6 +12,7 @@ namespace vdbmap::registration {
 struct ScanTiming {
   std::optional<double> first;  ///< [s] time of the first point; nothing where the times cannot be used
   double interval = 0.1;        ///< [s] from the scan before to this one
+  double usual_interval = 0.1;  ///< [s] as it was between the scans before
   std::string problem;          ///< why the scan's times cannot be used; empty also where it has none
 };
 

@@ -16,9 +16,11 @@ double SensorMotion::seconds_since_registered() const {
   return std::max(first_time_ + lead_ - registered_mean_time_, kLeastInterval);
 }
 
-Eigen::Isometry3d SensorMotion::predicted_pose() const {
-  return map_from_registered_ * motion_of_twist(seconds_since_registered() * twist_);
+Eigen::Isometry3d SensorMotion::predicted_pose(double seconds) const {
+  return map_from_registered_ * motion_of_twist(seconds * twist_);
 }
+
+Eigen::Isometry3d SensorMotion::predicted_pose() const { return predicted_pose(seconds_since_registered()); }
 
 Vector6d SensorMotion::twist_to(const Eigen::Isometry3d& map_from_scan) const {
   return twist_of_motion(map_from_registered_.inverse() * map_from_scan) / seconds_since_registered();

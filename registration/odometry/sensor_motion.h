@@ -21,6 +21,9 @@ class SensorMotion {
   /// Where the motion leads to.
   Eigen::Isometry3d predicted_pose() const;
 
+  /// Where it leads to in `seconds` from the last registered scan.
+  Eigen::Isometry3d predicted_pose(double seconds) const;
+
   /// The twist [per second] that would have led to this pose.
   Vector6d twist_to(const Eigen::Isometry3d& map_from_scan) const;
 

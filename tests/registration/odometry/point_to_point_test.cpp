@@ -37,9 +37,9 @@ TEST(PointToPoint, FindsAScanFromHalfAMetreAndThreeDegrees) {
     const Eigen::Isometry3d guess = problem.map_from_scan * test::random_motion(0.5, 3, random);
     const PointToPointResult result = align_points(problem.points, problem.map, guess);
     const test::PoseDistance error = test::distance_between(result.map_from_scan, problem.map_from_scan);
-    // The map's points are 0.22 m apart: of 600 matches, each up to half of that off.
-    EXPECT_LT(error.translation, 0.02);
-    EXPECT_LT(error.rotation_deg, 0.1);
+    // The map's points are 0.22 m and more apart, so a match is 0.1 m off; some hundred of them hold the scan.
+    EXPECT_LT(error.translation, 0.05);
+    EXPECT_LT(error.rotation_deg, 0.3);
     EXPECT_TRUE(result.converged);
     EXPECT_EQ(result.matches.num_inliers, problem.points.size());
   }
