@@ -29,7 +29,7 @@ vdbmap() { "$build/bin/vdbmap" "$@"; }
 build_all() {
   install_missing "${build_packages[@]}" "${test_packages[@]}" "${benchmark_packages[@]}"
   cmake --preset release -B "$build"
-  cmake --build "$build" --target vdbmap_command map_benchmark fine_benchmark
+  cmake --build "$build" --target vdbmap_command map_benchmark fine_benchmark odometry_benchmark
 }
 
 # Interleaving spreads other programs' work over all rows, so that their ratios hold on a busy machine.
@@ -104,6 +104,16 @@ tabulate_fine() {
   done
 }
 
+tabulate_odometry() {
+  local name
+  for name in register_scan/threads:1 register_scan/threads:2; do
+    if [[ -z $(median odometry_benchmark "$name") ]]; then continue; fi
+    row "odometry, one scan, $name" "$(milliseconds odometry_benchmark "$name" 1)" \
+      "$(median_text odometry_benchmark "$name" cpu_ms 1 ' ms') CPU;\
+ XY error at most $(median_text odometry_benchmark "$name" max_xy_m 3 ' m')"
+  done
+}
+
 # Odd scans in the map of the even ones, each from the pose of the scan before.
 measure_accuracy() {
   awk 'NR % 2 == 0 { print before } { before = $0 }' "$data/poses.txt" > "$results/guesses.txt"
@@ -163,12 +173,14 @@ mkdir -p "$results"
 if [[ -n $data ]]; then export VDBMAP_DRIVE=$data; else skip "no DATA_FOLDER given: accuracy and scaling"; fi
 run_benchmark map_benchmark
 run_benchmark fine_benchmark
+run_benchmark odometry_benchmark
 if [[ -z $(median map_benchmark open3d_voxel_down_sample/street) ]]; then
   skip "Open3D not found (apt-get install libopen3d-dev): no peers"
 fi
 tabulate_building
 tabulate_size
 tabulate_fine
+tabulate_odometry
 if [[ -n $data ]]; then
   measure_accuracy
   measure_scaling

@@ -83,8 +83,8 @@ TEST_P(OdometryKitti, AGapOfEightScansIsBridged) {
 INSTANTIATE_TEST_SUITE_P(Drives, OdometryKitti,
                          testing::Values(DriveCase{"kitti_drive5"}, DriveCase{"kitti00"}, DriveCase{"kitti_drive5", 4},
                                          DriveCase{"kitti00", 4}),
-                         [](const auto& info) {
-                           return info.param.folder + (info.param.every_ring == 1 ? "" : "_every_fourth_ring");
+                         [](const auto& drive) {
+                           return drive.param.folder + (drive.param.every_ring == 1 ? "" : "_every_fourth_ring");
                          });
 
 TEST(OdometryOfTwoPlaces, AnotherStreetIsRefused) {
