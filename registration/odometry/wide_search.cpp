@@ -10,9 +10,9 @@
 namespace vdbmap::registration {
 namespace {
 
-constexpr std::size_t kMaxScoredPoints = 250;  // enough to tell places apart
+constexpr std::size_t kMaxScoredPoints = 400;  // enough to tell places apart
 constexpr double kNearDistance = 1;            // [m] of a point that speaks for a place
-constexpr int kMaxRoughIterations = 40;        // a place that is right has mostly come to rest by then
+constexpr int kMaxRoughIterations = 100;       // a place that is right has mostly come to rest by then
 
 struct Candidate {
   Eigen::Isometry3d map_from_scan;

