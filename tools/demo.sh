@@ -1,17 +1,19 @@
 #!/usr/bin/env bash
 # SPDX-License-Identifier: GPL-3.0-or-later
-# tools/demo.sh DATA_FOLDER: from a folder with velodyne/ and poses.txt, builds a map of every second scan into demo/,
-# looks into it, and finds the other scans in it.
+# tools/demo.sh: simulates a street, maps its first survey, finds the scans of another day in it with no first guess, and
+# compares them with the truth. tools/demo.sh DATA_FOLDER: the same with real scans, from a folder with velodyne/ and
+# poses.txt: a map of every second scan, the others found in it. Everything is written to demo/; demo/summary.txt holds
+# what the commands said.
 set -euo pipefail
-if (($# != 1)); then
-  echo "usage: tools/demo.sh DATA_FOLDER" >&2
+if (($# > 1)); then
+  echo "usage: tools/demo.sh [DATA_FOLDER]" >&2
   exit 2
 fi
-if [[ ! -d $1/velodyne || ! -f $1/poses.txt ]]; then
+if (($# == 1)) && [[ ! -d $1/velodyne || ! -f $1/poses.txt ]]; then
   echo "tools/demo.sh: $1 must hold velodyne/ and poses.txt" >&2
   exit 3
 fi
-data=$(realpath "$1")
+data=${1:+$(realpath "$1")}
 cd "$(dirname "${BASH_SOURCE[0]}")/.."
 . tools/packages.sh
 
@@ -19,10 +21,13 @@ install_missing "${build_packages[@]}" "${test_packages[@]}"
 cmake --preset release
 cmake --build --preset release --target vdbmap_command
 mkdir -p demo
+: > demo/summary.txt
 
 vdbmap() {
-  printf '\n$ vdbmap %s\n' "$*"
-  build/release/bin/vdbmap "$@"
+  {
+    printf '\n$ vdbmap %s\n' "$*"
+    build/release/bin/vdbmap "$@"
+  } | tee -a demo/summary.txt
 }
 
 # The mean of a voxel halfway down the exported list: a place where there is something to ask for.
@@ -30,21 +35,45 @@ some_point() {
   awk -v count="$(wc -l < "$1")" -F '[ ,\t]+' 'NR > count / 2 && $1 + 0 == $1 { print $1 "," $2 "," $3; exit }' "$1"
 }
 
-# The guess for each odd scan is the pose of the scan before it.
-awk 'NR % 2 == 0 { print before } { before = $0 }' "$data/poses.txt" > demo/guesses.txt
+look_into_map() {
+  vdbmap info demo/map.vdb
+  vdbmap export demo/map.vdb demo/map.xyz
+  vdbmap query demo/map.vdb --at "$(some_point demo/map.xyz)"
+  vdbmap check demo/map.vdb
+  vdbmap export demo/map.vdb demo/map.ply
+  vdbmap export demo/map.vdb --channels demo/channels.vdb
+  vdbmap import demo/channels.vdb -o demo/imported.vdb
+}
 
-vdbmap build "$data/velodyne" --poses "$data/poses.txt" --every 2 -o demo/map.vdb
-vdbmap info demo/map.vdb
-vdbmap export demo/map.vdb demo/map.xyz
-vdbmap query demo/map.vdb --at "$(some_point demo/map.xyz)"
-vdbmap check demo/map.vdb
-vdbmap export demo/map.vdb demo/map.ply
-vdbmap export demo/map.vdb --channels demo/channels.vdb
-vdbmap import demo/channels.vdb -o demo/imported.vdb
-vdbmap build "$data/velodyne" --poses "$data/poses.txt" --every 2 --offset 1 -o demo/odd.vdb
-vdbmap merge demo/map.vdb demo/odd.vdb -o demo/both.vdb
-vdbmap localize demo/map.vdb "$data/velodyne" --every 2 --offset 1 --initial demo/guesses.txt -o demo/poses.txt
-vdbmap evaluate demo/poses.txt "$data/poses.txt" --every 2 --offset 1 --plot demo/evaluation.png
-vdbmap render demo/map.vdb -o demo/street.png
-vdbmap render demo/map.vdb -o demo/plan.png --view plan --trajectory demo/poses.txt "$data/poses.txt"
-vdbmap render demo/map.vdb -o demo/drive.png --view perspective --trajectory demo/poses.txt
+draw_pictures() {
+  vdbmap render demo/map.vdb -o demo/street.png
+  vdbmap render demo/map.vdb -o demo/plan.png --view plan --trajectory demo/poses.txt "$1"
+  vdbmap render demo/map.vdb -o demo/drive.png --view perspective --trajectory demo/poses.txt
+}
+
+demonstrate_on_simulated_street() {
+  local street=demo/street
+  vdbmap simulate "$street" --seed 1
+  vdbmap build "$street/epoch0/cloud.las" -o demo/map.vdb
+  look_into_map
+  vdbmap localize demo/map.vdb "$street/epoch1/scans" -o demo/poses.txt --report demo/report.json
+  vdbmap evaluate demo/poses.txt "$street/epoch1/poses.txt" --plot demo/evaluation.png
+  draw_pictures "$street/epoch1/poses.txt"
+}
+
+demonstrate_on_real_scans() {
+  # The guess for each odd scan is the pose of the scan before it.
+  awk 'NR % 2 == 0 { print before } { before = $0 }' "$data/poses.txt" > demo/guesses.txt
+
+  vdbmap build "$data/velodyne" --poses "$data/poses.txt" --every 2 -o demo/map.vdb
+  look_into_map
+  vdbmap build "$data/velodyne" --poses "$data/poses.txt" --every 2 --offset 1 -o demo/odd.vdb
+  vdbmap merge demo/map.vdb demo/odd.vdb -o demo/both.vdb
+  vdbmap odometry "$data/velodyne" -o demo/odometry.txt --map demo/local.vdb
+  vdbmap localize demo/map.vdb "$data/velodyne" --every 2 --offset 1 --initial demo/guesses.txt -o demo/guided.txt
+  vdbmap localize demo/map.vdb "$data/velodyne" --every 2 --offset 1 -o demo/poses.txt --report demo/report.json
+  vdbmap evaluate demo/poses.txt "$data/poses.txt" --every 2 --offset 1 --plot demo/evaluation.png
+  draw_pictures "$data/poses.txt"
+}
+
+if [[ -n $data ]]; then demonstrate_on_real_scans; else demonstrate_on_simulated_street; fi

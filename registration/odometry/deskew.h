@@ -17,8 +17,8 @@ struct ScanMotion {
   Vector6d twist = Vector6d::Zero();  ///< angular velocity [rad/s], then velocity [m/s]; axes of the sensor
 };
 
-/// The points as if all had been measured at the reference time (Vizzo 2023, eq. 3, with the twist constant in the
-/// frame of the moving sensor): positions [m] in the frame of the sensor at their times [s], one a point. Throws
+/// The points as if all had been measured at the reference time (Vizzo 2023, section III-A, with the twist constant in
+/// the frame of the moving sensor): positions [m] in the frame of the sensor at their times [s], one a point. Throws
 /// std::invalid_argument where the numbers of positions and times differ.
 std::vector<Eigen::Vector3d> deskew_points(std::span<const Eigen::Vector3d> positions, std::span<const double> times,
                                            const ScanMotion& motion);

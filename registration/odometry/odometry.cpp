@@ -136,7 +136,7 @@ OdometryStep Odometry::register_scan(const PointCloud& scan) {
   last_lead_ = sample.lead;
   OdometryStep step;
   step.has_time = timing.first.has_value();
-  step.time_problem = timing.problem;
+  if (options_.deskews) step.time_problem = timing.problem;
   step.motion.reference_time = sample.first_time;
   step.sigma = threshold_.sigma();
   step.first_from_scan = motion_.at_first_point(motion_.predicted_pose());
@@ -222,7 +222,7 @@ void Odometry::add_to_map(const Alignment& alignment, OdometryStep& step) {
   if (covariance) step.covariance = with_axes_of(*covariance, first_from_registered_.linear());
   step.first_from_scan = motion_.at_first_point(map_from_scan);
   step.previous_from_scan = first_from_registered_.inverse() * step.first_from_scan;
-  if (step.has_time) step.motion.twist = motion_.twist();
+  if (step.has_time && options_.deskews) step.motion.twist = motion_.twist();
 
   map_.insert(moved(alignment.points, map_from_scan));
   map_.forget_far(map_from_scan.translation());

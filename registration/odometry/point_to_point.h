@@ -23,8 +23,8 @@ struct MatchLimits {
 };
 
 /// The points of a scan at a pose, each with the nearest point of the map: residual r = map_from_scan p - q [m], cost
-/// kappa r^2 / 2 / (kappa + r^2), weight w = kappa^2 / (kappa + r^2)^2 (Vizzo 2023, eq. 10, times kappa). Derivatives
-/// are by a motion as in moved_by().
+/// kappa r^2 / 2 / (kappa + r^2), weight w = kappa^2 / (kappa + r^2)^2 (Vizzo 2023, section III-D, times kappa).
+/// Derivatives are by a motion as in moved_by().
 struct MatchSums {
   double cost = 0;                          ///< [m^2]
   Vector6d gradient = Vector6d::Zero();     ///< of the cost: sum of w J^T r
