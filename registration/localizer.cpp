@@ -44,12 +44,6 @@ std::string reason_not_found(const Evidence& evidence, const FoundCriteria& crit
   return "only " + percent(share) + " of the points lie on the map, expected " + percent(criteria.min_inlier_share);
 }
 
-void check_levels(const VoxelMap& map) {
-  constexpr double kMinVoxelSize = 0.5;  // [m] features of finer levels see no more than a door
-  if (map.levels.size() >= 2 && map.coarsest().voxel_size() >= kMinVoxelSize) return;
-  throw std::invalid_argument("the map has no level of 1 m, which the search without a first guess needs");
-}
-
 }  // namespace
 
 // Where scans are thought to lie; nothing where that is not known.
@@ -235,6 +229,12 @@ SequenceResult Localizer::State::locate_all() {
   return result;
 }
 
+std::string reason_not_searchable(const VoxelMap& map) {
+  constexpr double kMinVoxelSize = 0.5;  // [m] features of finer levels see no more than a door
+  if (map.levels.size() >= 2 && map.coarsest().voxel_size() >= kMinVoxelSize) return "";
+  return "the map has no level of 1 m, which a search without a first guess needs";
+}
+
 void LocalizerOptions::check() const {
   if (batch_size == 0) throw std::invalid_argument("batch_size is 0, expected 1 or more");
   coarse.check();
@@ -246,7 +246,8 @@ void LocalizerOptions::check() const {
 
 Localizer::Localizer(const VoxelMap& map, LocalizerOptions options) : state_(std::make_unique<State>()) {
   options.check();
-  check_levels(map);
+  const std::string reason = reason_not_searchable(map);
+  if (!reason.empty()) throw std::invalid_argument(reason);
   if (options.upright) options.coarse.consensus.max_tilt_deg = kUprightTilt_deg;
   state_->map = &map;
   state_->coarse_map = prepare_coarse_map(map.coarsest(), options.coarse);

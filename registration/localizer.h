@@ -63,13 +63,17 @@ struct SequenceResult {
   std::vector<SequenceBatch> batches;
 };
 
+/// Why a map cannot be searched without a first guess: it has no level of 0.5 m or more above a finer one. Empty where
+/// it can.
+std::string reason_not_searchable(const VoxelMap& map);
+
 /// Localizes a sequence of scans with no first guess (Mortazavi 2023, section 2): scans are combined by odometry,
 /// batches are looked for in the whole map, then every scan is aligned by itself and all of them jointly. Memory: some
 /// thousand points a scan.
 class Localizer {
  public:
   /// Keeps a reference to the map and makes its features. Throws std::invalid_argument for bad options and for a map
-  /// whose coarsest level is finer than 0.5 m or that has one level only.
+  /// that is not searchable.
   explicit Localizer(const VoxelMap& map, LocalizerOptions options = {});
   ~Localizer();
   Localizer(Localizer&&) noexcept;

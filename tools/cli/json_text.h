@@ -6,6 +6,8 @@
 #include <Eigen/Core>
 #include <nlohmann/json.hpp>
 
+#include "vdbmap/io/scan_sequence.h"
+
 namespace vdbmap::cli {
 
 /// A matrix as an array of rows.
@@ -19,5 +21,8 @@ nlohmann::ordered_json json_of_matrix(const Matrix& matrix) {
   }
   return rows;
 }
+
+/// The fields that name a scan: its file and, in a capture, its turn, counted from 1.
+nlohmann::ordered_json json_of_place(const ScanPlace& scan);
 
 }  // namespace vdbmap::cli

@@ -1,6 +1,4 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "registration/localize.h"
-
 #include <filesystem>
 #include <optional>
 #include <stdexcept>
@@ -10,6 +8,7 @@
 #include <nlohmann/json.hpp>
 #include <spdlog/fmt/fmt.h>
 
+#include "registration/localizer.h"
 #include "tools/cli/command.h"
 #include "tools/cli/localize_modes.h"
 #include "tools/cli/localize_report.h"
@@ -117,6 +116,8 @@ Localized localize(const std::vector<ScanPlace>& scans, const LocalizeCommandOpt
   if (options.initial) given = read_guesses(*options.initial, options.selection, scans.size());
   if (options.odometry) given = read_selected_poses(*options.odometry, options.selection, scans.size());
   const VoxelMap map = load_map(options.map);
+  const std::string reason = options.initial ? "" : registration::reason_not_searchable(map);
+  if (!reason.empty()) throw IoError::malformed(options.map, reason);
   std::vector<double> times = given ? given->times : std::vector<double>();
   if (options.initial) {
     return {localize_from_guesses(scans, map, *given, options.localizer.fine, options.localizer.found, common), times};

@@ -26,7 +26,8 @@ nlohmann::ordered_json json_of_pose(const Eigen::Isometry3d& pose) {
 }
 
 nlohmann::ordered_json json_of(const LocalizedRow& row) {
-  nlohmann::ordered_json json = {{"file", row.scan.name()}, {"found", row.found()}};
+  nlohmann::ordered_json json = json_of_place(row.scan);
+  json["found"] = row.found();
   if (!row.found()) json["reason"] = row.reason;
   if (!row.time_problem.empty()) json["not_deskewed"] = row.time_problem;
   json["map_from_scan"] = json_of_pose(row.map_from_scan);

@@ -163,7 +163,8 @@ double path_length(const std::vector<ScanReport>& reports) {
 
 nlohmann::ordered_json json_of(const ScanReport& report) {
   const OdometryStep& step = report.step;
-  nlohmann::ordered_json json = {{"file", report.scan.name()}, {"registered", step.registered()}};
+  nlohmann::ordered_json json = json_of_place(report.scan);
+  json["registered"] = step.registered();
   if (!step.registered()) json["reason"] = step.reason;
   if (!step.time_problem.empty()) json["not_deskewed"] = step.time_problem;
   if (step.has_time) json["time_s"] = step.motion.reference_time;
