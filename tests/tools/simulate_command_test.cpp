@@ -89,8 +89,9 @@ TEST_F(SimulateCommand, ReplacesAnEarlierSimulation) {
 TEST_F(SimulateCommand, LeavesNothingWhenInterrupted) {
   if (test::kIsSanitized) GTEST_SKIP() << "takes minutes under a sanitizer";
   test::RunOptions options;
-  options.while_running = [](pid_t child) {
-    std::this_thread::sleep_for(std::chrono::milliseconds(700));
+  options.while_running = [this](pid_t child) {
+    // Not before there is something to remove.
+    for (int i = 0; i < 2000 && num_entries() == 0; ++i) std::this_thread::sleep_for(std::chrono::milliseconds(10));
     ::kill(child, SIGINT);
   };
   const auto result = test::run_command(VDBMAP_COMMAND, {"simulate", out(), "--length", "300"}, options);

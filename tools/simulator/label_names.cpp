@@ -14,7 +14,6 @@ const std::vector<std::pair<SurfaceClass, std::string_view>>& label_names() {
       {kPavement, "sidewalk"},
       {kBuilding, "building"},
       {kFence, "fence"},
-      {kOtherStructure, "other-structure"},
       {kVegetation, "vegetation"},
       {kTrunk, "trunk"},
       {kTerrain, "terrain"},

@@ -12,7 +12,7 @@ namespace {
 
 constexpr double kGateGap = 1.3;  // [m] that a garden's border leaves open before the door
 
-// Draws one lot; its parts share so much that they are one object.
+// Draws one lot.
 class LotPainter {
  public:
   LotPainter(World& world, Mesh& mesh, const StreetLayout& layout, const SideLayout& side, const Lot& lot,

@@ -17,7 +17,6 @@ enum class SurfaceClass : std::uint16_t {
   kPavement = 48,
   kBuilding = 50,
   kFence = 51,
-  kOtherStructure = 52,
   kVegetation = 70,
   kTrunk = 71,
   kTerrain = 72,

@@ -12,7 +12,4 @@ namespace vdbmap::simulator {
 /// Adds what stands on the pavements for years: trees, lamps, signs and bollards. Trees are appended to `trees`.
 void add_pavement(World& world, Mesh& mesh, const StreetLayout& layout, std::vector<Tree>& trees, Random& random);
 
-/// Adds what an epoch finds elsewhere than the next: people, bicycles and bins. `seed` is the street's.
-void add_passers_by(World& world, Mesh& mesh, const StreetLayout& layout, int epoch, std::uint64_t seed);
-
 }  // namespace vdbmap::simulator

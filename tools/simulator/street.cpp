@@ -3,6 +3,7 @@
 
 #include "tools/simulator/ground.h"
 #include "tools/simulator/lot_scenery.h"
+#include "tools/simulator/passers_by.h"
 #include "tools/simulator/pavement.h"
 #include "tools/simulator/vehicle_model.h"
 

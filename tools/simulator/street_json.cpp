@@ -68,14 +68,13 @@ Json json_of_lot(const Lot& lot) {
 }
 
 Json json_of_side(const SideLayout& side) {
-  constexpr std::array<const char*, 5> kParking = {"none", "parallel", "half on pavement", "on pavement", "angled"};
   constexpr std::array<const char*, 3> kHousing = {"terraced", "block", "detached"};
   Json types = Json::array();
   for (const HouseType& type : side.house_types) types.push_back(json_of_house_type(type));
   Json lots = Json::array();
   for (const Lot& lot : side.lots) lots.push_back(json_of_lot(lot));
   return {{"side", side.sign > 0 ? "left" : "right"},
-          {"parking", kParking[static_cast<std::size_t>(side.parking)]},
+          {"parking", name_of(side.parking)},
           {"housing", kHousing[static_cast<std::size_t>(side.housing)]},
           {"lane_width", side.lane_width},
           {"parking_width", side.parking_width},

@@ -2,6 +2,7 @@
 #include "tools/simulator/street_side.h"
 
 #include <algorithm>
+#include <array>
 
 namespace vdbmap::simulator {
 namespace {
@@ -17,6 +18,11 @@ double rise_outside(const Interval& stretch, double station, double ramp) {
 }
 
 }  // namespace
+
+std::string name_of(ParkingKind kind) {
+  constexpr std::array<const char*, 5> kNames = {"none", "parallel", "half on pavement", "on pavement", "angled"};
+  return kNames[static_cast<std::size_t>(kind)];
+}
 
 std::vector<Interval> SideLayout::stretches(LotKind kind) const {
   std::vector<Interval> found;

@@ -3,6 +3,7 @@
 
 #include <cstddef>
 #include <cstdint>
+#include <string>
 #include <vector>
 
 #include "tools/simulator/house_type.h"
@@ -24,6 +25,9 @@ struct Interval {
 
 /// How cars stand along a side.
 enum class ParkingKind { kNone, kParallel, kHalfOnPavement, kOnPavement, kAngled };
+
+/// "none", "parallel", "half on pavement", "on pavement", "angled".
+std::string name_of(ParkingKind kind);
 
 /// What stands on a stretch behind the pavement.
 enum class LotKind { kHouse, kGap, kDriveway, kSideStreet };

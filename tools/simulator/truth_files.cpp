@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "tools/simulator/truth_files.h"
 
-#include <array>
 #include <cmath>
 #include <iterator>
 #include <string>
@@ -18,11 +17,6 @@ using Json = nlohmann::ordered_json;
 
 // Coordinates to a tenth of a millimetre: 17 digits would only show how doubles round.
 double rounded(double value) { return std::round(value * 1e4) / 1e4; }
-
-std::string name_of(ParkingKind kind) {
-  constexpr std::array<const char*, 5> kNames = {"none", "parallel", "half on pavement", "on pavement", "angled"};
-  return kNames[static_cast<std::size_t>(kind)];
-}
 
 Json json_of_outline(const Street& street, const ParkingSpace& space) {
   Json ring = Json::array();

@@ -1,0 +1,49 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "tools/simulator/street.h"
+
+#include <set>
+
+#include <gtest/gtest.h>
+
+#include "tools/simulator/label_names.h"
+
+namespace vdbmap::simulator {
+namespace {
+
+std::set<std::uint16_t> labels_of(const Street& street, const Mesh& mesh) {
+  std::set<std::uint16_t> labels;
+  for (const Triangle& t : mesh.triangles) {
+    labels.insert(static_cast<std::uint16_t>(street.world.materials()[t.material].label));
+  }
+  return labels;
+}
+
+TEST(Street, HoldsEverythingAStreetHas) {
+  std::set<std::uint16_t> found;
+  for (const std::uint64_t seed : {1, 2}) {
+    const Street street = make_street({.seed = seed, .length = 90, .margin = 5, .num_epochs = 1});
+    found.merge(labels_of(street, street.mesh(0)));
+  }
+  for (const auto& [label, name] : label_names()) {
+    EXPECT_TRUE(found.contains(static_cast<std::uint16_t>(label))) << name;
+  }
+}
+
+TEST(Street, EpochsShareWhatLastsAndEveryTriangleHasAMaterialAndAnObject) {
+  const Street street = make_street({.length = 40, .margin = 5, .num_epochs = 3});
+  EXPECT_EQ(street.changing.size(), 3U);
+  for (int epoch = 0; epoch < 3; ++epoch) {
+    const Mesh mesh = street.mesh(epoch);
+    EXPECT_EQ(mesh.triangles.size(),
+              street.lasting.triangles.size() + street.changing[static_cast<std::size_t>(epoch)].triangles.size());
+    for (const Triangle& t : mesh.triangles) {
+      ASSERT_LT(t.material, street.world.materials().size());
+      ASSERT_LT(t.object, street.world.objects().size());
+      ASSERT_LT(std::max({t.a, t.b, t.c}), mesh.vertices.size());
+    }
+    for (const Eigen::Vector3f& vertex : mesh.vertices) ASSERT_TRUE(vertex.allFinite());
+  }
+}
+
+}  // namespace
+}  // namespace vdbmap::simulator
