@@ -15,7 +15,7 @@ namespace vdbmap::registration {
 namespace {
 
 const VoxelMap& street_map() {
-  static const VoxelMap map = build_map(test::sample_scene(test::village(), 150, 1));
+  static const VoxelMap map = build_map(test::survey_of_village());
   return map;
 }
 
@@ -66,8 +66,8 @@ TEST(Sequence, IsFoundWithNoFirstGuess) {
 TEST(Sequence, IsFoundInAMapAtUtmCoordinates) {
   const Eigen::Vector3d utm(552'320, 5'802'560, 64);
   BuildOptions options;
-  const VoxelMap map = build_map(
-      test::moved(test::sample_scene(test::village(), 150, 1), Eigen::Isometry3d(Eigen::Translation3d(utm))), options);
+  const VoxelMap map =
+      build_map(test::moved(test::survey_of_village(), Eigen::Isometry3d(Eigen::Translation3d(utm))), options);
   const Drive drive(4);
   const SequenceResult result = localize(drive.scans, map);
   for (std::size_t i = 0; i < 4; ++i) expect_found(result.scans[i], Eigen::Translation3d(utm) * drive.map_from_scan[i]);

@@ -24,7 +24,7 @@ class Localize : public MapCommand {
   static constexpr int kNumScans = 4;
 
   Localize() {
-    built("village.vdb", test::sample_scene(test::village(), 150, 1));
+    built("village.vdb", test::survey_of_village());
     std::filesystem::create_directories(folder_ / "drive");
     for (int i = 0; i < kNumScans; ++i) {
       Eigen::Isometry3d pose(Eigen::Translation3d(-14 + i, 0.5, 1.8));
