@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "registration/fine/observability.h"
 
+#include <algorithm>
 #include <array>
 #include <cstdio>
 #include <numeric>
@@ -43,16 +44,28 @@ Matrix6d curvature(std::span<const PlaneMatch> matches, std::span<const double> 
   return excess.isPositive() ? of_slopes : of_weights;
 }
 
+// Squares of weight times distance, as far as the match did not draw the scan to itself: by the leverage h of each
+// match they are a factor (1 - h)^2 too small (HC3 of MacKinnon & White 1985), which tells where points are few.
+std::vector<double> squared_pulls_of(std::span<const PlaneMatch> matches, std::span<const double> weights,
+                                     const Eigen::Isometry3d& map_from_scan) {
+  constexpr double kMaxLeverage = 0.9;
+  const Eigen::LDLT<Matrix6d> of_weights(information(matches, weights, map_from_scan) + 1e-9 * Matrix6d::Identity());
+  std::vector<double> squared_pulls = plane_distances(matches, map_from_scan);
+  for (std::size_t i = 0; i < squared_pulls.size(); ++i) {
+    const Vector6d row = sensitivity_to_motion(matches[i], map_from_scan);
+    const double leverage = std::min(weights[i] * row.dot(of_weights.solve(row)), kMaxLeverage);
+    const double pull = weights[i] * squared_pulls[i] / (1 - leverage);
+    squared_pulls[i] = pull * pull;
+  }
+  return squared_pulls;
+}
+
 }  // namespace
 
 Matrix6d motion_covariance(std::span<const PlaneMatch> matches, std::span<const double> weights,
                            std::span<const double> slopes, const Eigen::Isometry3d& map_from_scan) {
-  std::vector<double> squared_pulls = plane_distances(matches, map_from_scan);
-  for (std::size_t i = 0; i < squared_pulls.size(); ++i) {
-    const double pull = weights[i] * squared_pulls[i];
-    squared_pulls[i] = pull * pull;
-  }
   const Matrix6d bread = curvature(matches, weights, slopes, map_from_scan);
+  const std::vector<double> squared_pulls = squared_pulls_of(matches, weights, map_from_scan);
   const Matrix6d filling = information(matches, squared_pulls, map_from_scan);
 
   // The prior belongs to unit noise; scaled by the noise it only shows where the planes say nothing.

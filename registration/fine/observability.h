@@ -17,8 +17,8 @@ struct UnobservableDirection {
 
 /// Covariance of the pose: rotation [rad^2] about the sensor, then translation [m^2], axes of the map. The sandwich of
 /// White (1980), so that residuals of unequal spread count as they are, for a robust kernel as Huber (1967) has it:
-/// `slopes` are the derivatives of weight times distance by the distance. Along directions that the planes do not
-/// determine it is that of the guesses we accept: 2 m and 10 degrees.
+/// and few points (HC3 of MacKinnon & White 1985): `slopes` are the derivatives of weight times distance by the
+/// distance. Along directions that the planes do not determine it is that of the guesses we accept: 2 m and 10 degrees.
 Matrix6d motion_covariance(std::span<const PlaneMatch> matches, std::span<const double> weights,
                            std::span<const double> slopes, const Eigen::Isometry3d& map_from_scan);
 

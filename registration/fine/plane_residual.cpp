@@ -42,14 +42,19 @@ std::vector<double> plane_distances(std::span<const PlaneMatch> matches, const E
   return distances;
 }
 
+Vector6d sensitivity_to_motion(const PlaneMatch& match, const Eigen::Isometry3d& map_from_scan) {
+  const Eigen::Vector3d arm = map_from_scan.linear() * match.point;
+  Vector6d row;
+  row.head<3>() = arm.cross(match.normal);
+  row.tail<3>() = match.normal;
+  return row;
+}
+
 Matrix6d information(std::span<const PlaneMatch> matches, std::span<const double> weights,
                      const Eigen::Isometry3d& map_from_scan) {
   Matrix6d sum = Matrix6d::Zero();
   for (std::size_t i = 0; i < matches.size(); ++i) {
-    const Eigen::Vector3d arm = map_from_scan.linear() * matches[i].point;
-    Vector6d row;
-    row.head<3>() = arm.cross(matches[i].normal);
-    row.tail<3>() = matches[i].normal;
+    const Vector6d row = sensitivity_to_motion(matches[i], map_from_scan);
     sum += weights[i] * row * row.transpose();
   }
   return sum;

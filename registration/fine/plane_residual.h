@@ -37,6 +37,9 @@ class PlaneResiduals {
 /// Signed distances n . (map_from_scan p - m) [m].
 std::vector<double> plane_distances(std::span<const PlaneMatch> matches, const Eigen::Isometry3d& map_from_scan);
 
+/// The Jacobian row of a match at no motion: how its distance changes with a motion as in moved_by().
+Vector6d sensitivity_to_motion(const PlaneMatch& match, const Eigen::Isometry3d& map_from_scan);
+
 /// Sum of the outer products of the Jacobian rows: the information that the matches hold about the motion, for
 /// residuals of 1 m standard deviation.
 Matrix6d information(std::span<const PlaneMatch> matches, std::span<const double> weights,

@@ -137,14 +137,14 @@ PointCloud scan_scene(const Scene& scene, const Eigen::Isometry3d& map_from_scan
 }
 
 PointCloud survey_of_village() {
-  constexpr double kSpacing = 7;  // [m] between two stops
+  constexpr double kSpacing = 8;  // [m] between two stops
   const Scene scene = village();
   PointCloud survey;
   for (double x = -35; x <= 35; x += kSpacing) {
     const Eigen::Isometry3d pose(Eigen::Translation3d(x, -0.7, 2.2));
     const PointCloud scan =
         moved(scan_scene(scene, pose,
-                         {.num_beams = 48, .num_azimuths = 900, .min_elevation_deg = -40, .max_elevation_deg = 35}),
+                         {.num_beams = 40, .num_azimuths = 900, .min_elevation_deg = -40, .max_elevation_deg = 35}),
               pose);
     survey.positions.insert(survey.positions.end(), scan.positions.begin(), scan.positions.end());
   }
