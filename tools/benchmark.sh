@@ -29,7 +29,7 @@ vdbmap() { "$build/bin/vdbmap" "$@"; }
 build_all() {
   install_missing "${build_packages[@]}" "${test_packages[@]}" "${benchmark_packages[@]}"
   cmake --preset release -B "$build"
-  cmake --build "$build" --target vdbmap_command map_benchmark fine_benchmark
+  cmake --build "$build" --target vdbmap_command map_benchmark fine_benchmark render_benchmark
 }
 
 # Interleaving spreads other programs' work over all rows, so that their ratios hold on a busy machine.
@@ -91,6 +91,17 @@ tabulate_size() {
   done
   row "save the map, street" "$(milliseconds map_benchmark save_cloud_map/street_color)"
   row "load the map, street" "$(milliseconds map_benchmark load_cloud_map/street)"
+}
+
+tabulate_pictures() {
+  local map view names=(plan perspective orbit)
+  for map in street drive quarter; do
+    for view in 0 1 2; do
+      row "picture of 1920 x 1080, $map, ${names[view]}" "$(milliseconds render_benchmark "render_$map/view:$view/threads:2")" \
+        "2 threads; $(median_text render_benchmark "render_$map/view:$view/threads:1" cpu_time 0 ' ms') CPU;\
+ $(median_text render_benchmark "render_$map/view:$view/threads:1" voxels 0 ' voxels')"
+    done
+  done
 }
 
 tabulate_fine() {
@@ -163,12 +174,14 @@ mkdir -p "$results"
 if [[ -n $data ]]; then export VDBMAP_DRIVE=$data; else skip "no DATA_FOLDER given: accuracy and scaling"; fi
 run_benchmark map_benchmark
 run_benchmark fine_benchmark
+run_benchmark render_benchmark
 if [[ -z $(median map_benchmark open3d_voxel_down_sample/street) ]]; then
   skip "Open3D not found (apt-get install libopen3d-dev): no peers"
 fi
 tabulate_building
 tabulate_size
 tabulate_fine
+tabulate_pictures
 if [[ -n $data ]]; then
   measure_accuracy
   measure_scaling
