@@ -29,7 +29,8 @@ vdbmap() { "$build/bin/vdbmap" "$@"; }
 build_all() {
   install_missing "${build_packages[@]}" "${test_packages[@]}" "${benchmark_packages[@]}"
   cmake --preset release -B "$build"
-  cmake --build "$build" --target vdbmap_command map_benchmark fine_benchmark odometry_benchmark
+  cmake --build "$build" \
+    --target vdbmap_command map_benchmark fine_benchmark odometry_benchmark coarse_benchmark render_benchmark
 }
 
 # Interleaving spreads other programs' work over all rows, so that their ratios hold on a busy machine.
@@ -93,6 +94,17 @@ tabulate_size() {
   row "load the map, street" "$(milliseconds map_benchmark load_cloud_map/street)"
 }
 
+tabulate_pictures() {
+  local map view names=(plan perspective orbit)
+  for map in street drive quarter; do
+    for view in 0 1 2; do
+      row "picture of 1920 x 1080, $map, ${names[view]}" "$(milliseconds render_benchmark "render_$map/view:$view/threads:2")" \
+        "2 threads; $(median_text render_benchmark "render_$map/view:$view/threads:1" cpu_time 0 ' ms') CPU;\
+ $(median_text render_benchmark "render_$map/view:$view/threads:1" voxels 0 ' voxels')"
+    done
+  done
+}
+
 tabulate_fine() {
   local name
   for name in align_scan/threads:1 align_scan/threads:2 open3d_icp/threads:2 open3d_icp_with_kept_tree/threads:2; do
@@ -111,6 +123,29 @@ tabulate_odometry() {
     row "odometry, one scan, $name" "$(milliseconds odometry_benchmark "$name" 1)" \
       "$(median_text odometry_benchmark "$name" cpu_ms 1 ' ms') CPU;\
  XY error at most $(median_text odometry_benchmark "$name" max_xy_m 3 ' m')"
+  done
+}
+
+# A row's field with decimals, of a benchmark that ran once.
+once() { jq -r --arg row "$1" --arg field "$2" '[.benchmarks[] | select(.run_name | startswith($row))][0][$field] // empty
+  | if type == "number" then . * 1000 | round / 1000 else empty end' "$results/coarse_benchmark.json"; }
+
+# 50 batches a row, found in the map of the same street and refused in that of another.
+tabulate_coarse() {
+  local place row
+  for row in features/threads:1 features/threads:2 open3d_features/threads:1 open3d_features/threads:2; do
+    if [[ -n $(once "$row" real_time) ]]; then row "normals and FPFH, $row" "$(once "$row" real_time) ms"; fi
+  done
+  for place in drive kitti00; do
+    row "batch found in the map, $place" "$(once "find_batches/$place" real_time) ms" \
+      "$(once "find_batches/$place" within_2m_5deg) within 2 m and 5 deg before alignment,\
+ $(once "find_batches/$place" 'within_10cm_0.5deg') within 0.1 m and 0.5 deg after, $(once "find_batches/$place" wrong) wrong"
+    row "  and every scan of it, $place" "$(once "localize_batches/$place" real_time) ms" \
+      "$(once "localize_batches/$place" 'within_10cm_0.5deg') within 0.1 m and 0.5 deg,\
+ $(once "localize_batches/$place" wrong) wrong"
+  done
+  for row in kitti00_in_drive drive_in_kitti00; do
+    row "batches of another place accepted, $row" "$(once "refuse_batches/$row" accepted)"
   done
 }
 
@@ -174,6 +209,8 @@ if [[ -n $data ]]; then export VDBMAP_DRIVE=$data; else skip "no DATA_FOLDER giv
 run_benchmark map_benchmark
 run_benchmark fine_benchmark
 run_benchmark odometry_benchmark
+run_benchmark coarse_benchmark
+run_benchmark render_benchmark
 if [[ -z $(median map_benchmark open3d_voxel_down_sample/street) ]]; then
   skip "Open3D not found (apt-get install libopen3d-dev): no peers"
 fi
@@ -181,6 +218,8 @@ tabulate_building
 tabulate_size
 tabulate_fine
 tabulate_odometry
+tabulate_coarse
+tabulate_pictures
 if [[ -n $data ]]; then
   measure_accuracy
   measure_scaling

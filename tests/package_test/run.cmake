@@ -16,5 +16,5 @@ run(${CMAKE_COMMAND} -S ${CMAKE_CURRENT_LIST_DIR} -B ${work}/build -G Ninja
 run(${CMAKE_COMMAND} --build ${work}/build)
 run(${work}/build/consumer ${work}/poses.txt)
 if(EXISTS ${work}/prefix/bin/vdbmap)
-  run(${work}/prefix/bin/vdbmap evaluate ${work}/poses.txt ${work}/poses.txt)
+  run(${work}/prefix/bin/vdbmap evaluate ${work}/poses.txt ${work}/poses.txt --plot ${work}/plot.png)
 endif()

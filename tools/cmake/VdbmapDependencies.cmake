@@ -17,11 +17,3 @@ set(BUILD_SHARED_LIBS ${VDBMAP_SHARED_LIBS})
 find_package(PkgConfig REQUIRED)
 pkg_check_modules(PCAP REQUIRED IMPORTED_TARGET libpcap)
 pkg_check_modules(XXHASH REQUIRED IMPORTED_TARGET libxxhash)
-
-# Debian's config of OpenImageIO lists a folder of OpenCV's headers, which need not be there.
-find_package(OpenImageIO REQUIRED CONFIG)
-foreach(property INTERFACE_INCLUDE_DIRECTORIES INTERFACE_SYSTEM_INCLUDE_DIRECTORIES)
-  get_target_property(folders OpenImageIO::OpenImageIO ${property})
-  list(FILTER folders EXCLUDE REGEX "opencv")
-  set_target_properties(OpenImageIO::OpenImageIO PROPERTIES ${property} "${folders}")
-endforeach()

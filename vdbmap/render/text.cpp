@@ -6,22 +6,21 @@
 #include <cmath>
 #include <vector>
 
-#include <OpenImageIO/imagebuf.h>
-#include <OpenImageIO/imagebufalgo.h>
-
 #include "vdbmap/core/error.h"
+#include "vdbmap/render/picture_module.h"
 
 namespace vdbmap {
 namespace {
 
 constexpr double kCapitalHeight = 0.729;  // of the font size, in DejaVu Sans
 
-const char* font_of(const TextStyle& style) { return style.is_bold ? "DejaVuSans-Bold" : "DejaVuSans"; }
+TextLine line_of(const std::string& text, const TextStyle& style) { return {text, style.size, style.is_bold}; }
 
-/// Where the pixels of a line lie, seen from the left end of its baseline.
-OIIO::ROI extent_of(const std::string& text, const TextStyle& style) {
-  const OIIO::ROI extent = OIIO::ImageBufAlgo::text_size(text, style.size, font_of(style));
-  if (!extent.defined()) throw IoError::system(std::string(font_of(style)) + ".ttf", "cannot find the font", ENOENT);
+TextExtent extent_of(const std::string& text, const TextStyle& style) {
+  TextExtent extent;
+  if (!picture_module().measure_text(line_of(text, style), extent)) {
+    throw IoError::system("DejaVuSans.ttf", "cannot find the font", ENOENT);
+  }
   return extent;
 }
 
@@ -40,17 +39,12 @@ struct Letters {
 };
 
 Letters letters_of(const std::string& text, const TextStyle& style) {
-  constexpr int margin = 2;
-  const OIIO::ROI extent = extent_of(text, style);
-  const int width = extent.width() + 2 * margin;
-  const int height = extent.height() + 2 * margin;
-  OIIO::ImageBuf mask(OIIO::ImageSpec(width, height, 1, OIIO::TypeDesc::FLOAT), OIIO::InitializePixels::Yes);
-  OIIO::ImageBufAlgo::render_text(mask, margin - extent.xbegin, margin - extent.ybegin, text, style.size,
-                                  font_of(style));
-
-  Letters letters{extent.xbegin - margin, extent.ybegin - margin, width, height, {}};
-  letters.coverage.resize(static_cast<std::size_t>(width) * static_cast<std::size_t>(height));
-  mask.get_pixels(OIIO::ROI::All(), OIIO::TypeDesc::FLOAT, letters.coverage.data());
+  constexpr int kMargin = 2;  // [pixels] for what reaches beyond the extent by rounding
+  TextExtent around = extent_of(text, style);
+  around = {around.left - kMargin, around.top - kMargin, around.right + kMargin, around.bottom + kMargin};
+  Letters letters{around.left, around.top, around.right - around.left, around.bottom - around.top, {}};
+  letters.coverage.resize(static_cast<std::size_t>(letters.width) * static_cast<std::size_t>(letters.height));
+  picture_module().cover_text(line_of(text, style), around, letters.coverage.data());
   return letters;
 }
 
@@ -112,7 +106,7 @@ void draw_text(Image& image, const Eigen::Vector2d& place, const std::string& te
 }
 
 int text_width(const std::string& text, const TextStyle& style) {
-  return text.empty() ? 0 : extent_of(text, style).xend;
+  return text.empty() ? 0 : extent_of(text, style).right;
 }
 
 }  // namespace vdbmap
