@@ -17,7 +17,15 @@ std::size_t count_turns(const std::filesystem::path& capture) {
   return count;
 }
 
-bool is_capture(const std::filesystem::path& file) { return detect_point_format(file) == PointFormat::kVlp16Pcap; }
+// A file of no known content is no capture: reading it says what is wrong with it.
+bool is_capture(const std::filesystem::path& file) {
+  try {
+    return detect_point_format(file) == PointFormat::kVlp16Pcap;
+  } catch (const IoError& error) {
+    if (error.kind() != IoError::Kind::kMalformed) throw;
+    return false;
+  }
+}
 
 }  // namespace
 

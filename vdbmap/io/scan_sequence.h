@@ -26,7 +26,8 @@ struct ScanPlace {
 };
 
 /// The scans in the point files, in order: each file is one, of a Velodyne capture each turn that has points. To count
-/// its turns a capture is decoded once, one turn at a time; damage in it shows here already. Throws IoError.
+/// its turns a capture is decoded once, one turn at a time; damage in it shows here already, that of other files when
+/// they are read. Throws IoError.
 std::vector<ScanPlace> list_scans(const std::vector<std::filesystem::path>& files);
 
 /// Reads scans of a sequence. In the order of the sequence, left-out scans included, each capture is gone through once;
