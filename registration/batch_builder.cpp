@@ -12,7 +12,7 @@ constexpr std::size_t kPointsPerScan = 30'000;  // enough for voxels of 1 m, a q
 constexpr std::size_t kRays = 1000;
 
 constexpr double kFineSpacing = 1.5;    // [m] many scans together need fewer points each
-constexpr double kCoarseSpacing = 2.0;  // [m]
+constexpr double kCoarseSpacing = 3.0;  // [m]
 
 // Scans are limited by their own ranges already.
 constexpr RangeLimits kEverywhere{0, 1e6};

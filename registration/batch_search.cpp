@@ -15,34 +15,48 @@ namespace {
 
 // Of the hypotheses, the most that are aligned: the true one has been the first or second on every street tried.
 constexpr std::size_t kMaxAligned = 6;
+constexpr std::size_t kMaxAlignedFinely = 2;  // the best and its rival
 
 std::string percent(double share) { return std::to_string(std::lround(100 * share)) + " %"; }
 
-BatchCandidate align(const CombinedScans& combined, const VoxelMap& map, const PoseHypothesis& hypothesis) {
-  FineOptions options;
-  options.start_wide = true;
-  options.search_headings = false;
-  Eigen::Isometry3d map_from_batch = hypothesis.target_from_source;
-  map_from_batch.translation() += map.frame.anchor;
-  const FineResult fine = align_sample(combined.sample, map, map_from_batch, options);
+void sort_by_agreement(std::vector<BatchCandidate>& candidates) {
+  std::stable_sort(candidates.begin(), candidates.end(),
+                   [](const BatchCandidate& a, const BatchCandidate& b) { return a.agreement > b.agreement; });
+}
 
+BatchCandidate align_coarsely(const CombinedScans& combined, const VoxelMap& map, const PoseHypothesis& hypothesis) {
   BatchCandidate candidate;
-  candidate.map_from_batch = fine.map_from_scan;
-  candidate.coarse_guess = map_from_batch;
+  candidate.coarse_guess = hypothesis.target_from_source;
+  candidate.coarse_guess.translation() += map.frame.anchor;
+  candidate.map_from_batch = align_coarsely(combined.sample, map, candidate.coarse_guess);
   candidate.num_feature_inliers = hypothesis.num_inliers;
-  candidate.evidence = weigh(combined.sample.fine, combined.rays, map, fine.map_from_scan);
-  candidate.agreement = surface_agreement(combined.pieces, map, fine.map_from_scan);
-  candidate.covariance = fine.covariance;
+  candidate.agreement = surface_agreement(combined.pieces, map, candidate.map_from_batch);
   return candidate;
 }
 
-std::vector<BatchCandidate> align_all(const CombinedScans& combined, const VoxelMap& map,
-                                      std::span<const PoseHypothesis> hypotheses) {
+std::vector<BatchCandidate> align_all_coarsely(const CombinedScans& combined, const VoxelMap& map,
+                                               std::span<const PoseHypothesis> hypotheses) {
   std::vector<BatchCandidate> candidates(std::min(hypotheses.size(), kMaxAligned));
-  parallel_for(candidates.size(), [&](std::size_t i) { candidates[i] = align(combined, map, hypotheses[i]); });
-  std::stable_sort(candidates.begin(), candidates.end(),
-                   [](const BatchCandidate& a, const BatchCandidate& b) { return a.agreement > b.agreement; });
+  parallel_for(candidates.size(), [&](std::size_t i) { candidates[i] = align_coarsely(combined, map, hypotheses[i]); });
+  sort_by_agreement(candidates);
   return candidates;
+}
+
+void align_finely(BatchCandidate& candidate, const CombinedScans& combined, const VoxelMap& map) {
+  FineOptions options;
+  options.search_headings = false;
+  const FineResult fine = align_sample(combined.sample, map, candidate.map_from_batch, options);
+  candidate.map_from_batch = fine.map_from_scan;
+  candidate.covariance = fine.covariance;
+  candidate.agreement = surface_agreement(combined.pieces, map, fine.map_from_scan);
+  candidate.evidence = weigh(combined.sample.fine, combined.rays, map, fine.map_from_scan);
+}
+
+// The best few on all levels; the others are worse by more than that can change.
+void align_best_finely(std::vector<BatchCandidate>& candidates, const CombinedScans& combined, const VoxelMap& map) {
+  candidates.resize(std::min(candidates.size(), kMaxAlignedFinely));
+  parallel_for(candidates.size(), [&](std::size_t i) { align_finely(candidates[i], combined, map); });
+  sort_by_agreement(candidates);
 }
 
 Eigen::Vector3d center_of(std::span<const Eigen::Vector3d> points) {
@@ -117,7 +131,9 @@ BatchResult find_batch(const CombinedScans& combined, const VoxelMap& map, const
   }
   const std::vector<PoseHypothesis> hypotheses = find_coarse(combined.level, coarse_map, coarse);
   const Eigen::Vector3d center = center_of(combined.sample.fine);
-  result.candidates = without_repetitions(align_all(combined, map, hypotheses), center);
+  result.candidates = without_repetitions(align_all_coarsely(combined, map, hypotheses), center);
+  align_best_finely(result.candidates, combined, map);
+  result.candidates = without_repetitions(std::move(result.candidates), center);
   result.reason = reason_not_found(result.candidates, verdict);
   return result;
 }

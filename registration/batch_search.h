@@ -16,7 +16,7 @@ namespace vdbmap::registration {
 /// When a pose found without a guess is believed.
 struct VerdictOptions {
   double min_overlap = 0.3;        ///< share of the points that have the map near by
-  double min_agreement = 0.5;      ///< surface_agreement(); on KITTI streets true poses reach 0.60, others 0.45
+  double min_agreement = 0.52;     ///< surface_agreement(); on KITTI streets true poses reach 0.56, others 0.47
   double max_blocked_share = 0.6;  ///< of the rays: through solid map; what has moved since blocks some
   double min_margin = 1.2;         ///< agreement of the best pose by that of the next best
   double max_deviation = 0.25;     ///< [m] standard deviation of the place in its least certain direction
@@ -46,7 +46,7 @@ struct BatchCandidate {
 
 /// Where a batch lies, or why that is not known.
 struct BatchResult {
-  std::vector<BatchCandidate> candidates;  ///< the best first, no two alike
+  std::vector<BatchCandidate> candidates;  ///< the best and its rival, the better first; not alike
   std::string reason;                      ///< empty when found
 
   bool found() const { return reason.empty(); }

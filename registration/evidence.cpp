@@ -18,7 +18,14 @@ namespace {
 
 constexpr double kInlierDistance = 0.15;  // [m] of a point from its plane
 
-constexpr double kFlat = 0.5;  // planarity from which on a voxel counts as a piece of surface
+// Whether a voxel's points are a flat piece of one surface: a voxel in a corner holds several, which another sampling
+// weighs otherwise.
+bool is_flat(const PlaneFit& plane, const Eigen::Matrix3d& covariance) {
+  constexpr double kMinPlanarity = 0.5;
+  constexpr double kMaxThickness = 0.1;  // [m] standard deviation along the normal
+  return plane.planarity >= kMinPlanarity &&
+         plane.normal.dot(covariance * plane.normal) <= kMaxThickness * kMaxThickness;
+}
 
 Eigen::Isometry3d local_pose(const Eigen::Isometry3d& map_from_source, const VoxelMap& map) {
   Eigen::Isometry3d local = map_from_source;
@@ -83,9 +90,10 @@ PieceFit fit_piece(const VoxelFinder& finder, const VoxelLevel& level, const Sur
                          [&](const VoxelIndex& voxel, const VoxelRecord& record) {
                            if (fit == PieceFit::kOutside) fit = PieceFit::kDiffers;
                            if (fit == PieceFit::kAgrees) return;
-                           const PlaneFit plane = fit_plane(covariance_of(record));
+                           const Eigen::Matrix3d covariance = covariance_of(record);
+                           const PlaneFit plane = fit_plane(covariance);
                            const Eigen::Vector3d shift = piece.position - mean_of(record, voxel, level.voxel_size());
-                           if (plane.planarity >= kFlat && shift.norm() < level.voxel_size() &&
+                           if (is_flat(plane, covariance) && shift.norm() < level.voxel_size() &&
                                std::abs(plane.normal.dot(piece.normal)) >= kMinCosine &&
                                std::abs(plane.normal.dot(shift)) <= kMaxDistance) {
                              fit = PieceFit::kAgrees;
@@ -164,8 +172,9 @@ std::vector<SurfacePiece> flat_pieces(const VoxelLevel& level) {
   std::vector<SurfacePiece> pieces;
   for_each_voxel(level, [&](const VoxelIndex& voxel, std::size_t number) {
     const VoxelRecord& record = level.records()[number];
-    const PlaneFit plane = fit_plane(covariance_of(record));
-    if (record.count < kMinPoints || plane.planarity < kFlat) return;
+    const Eigen::Matrix3d covariance = covariance_of(record);
+    const PlaneFit plane = fit_plane(covariance);
+    if (record.count < kMinPoints || !is_flat(plane, covariance)) return;
     pieces.push_back({mean_of(record, voxel, level.voxel_size()), plane.normal});
   });
   return pieces;

@@ -75,12 +75,18 @@ bool is_far(const Eigen::Isometry3d& a, const Eigen::Isometry3d& b) {
          Eigen::AngleAxisd(difference.linear()).angle() > kRotation;
 }
 
-// Coarser levels from the coarsest down, then the finest.
-RoundsResult align_through_levels(const SampledScan& sample, const VoxelMap& map, Eigen::Isometry3d local_from_scan,
-                                  const FineOptions& options) {
+Eigen::Isometry3d align_on_coarser_levels(const SampledScan& sample, const VoxelMap& map,
+                                          Eigen::Isometry3d local_from_scan) {
   for (std::size_t i = map.levels.size(); i-- > 1;) {
     local_from_scan = run_rounds(coarse_stage(map.levels[i], sample.coarse), local_from_scan).local_from_scan;
   }
+  return local_from_scan;
+}
+
+// Coarser levels from the coarsest down, then the finest.
+RoundsResult align_through_levels(const SampledScan& sample, const VoxelMap& map, Eigen::Isometry3d local_from_scan,
+                                  const FineOptions& options) {
+  local_from_scan = align_on_coarser_levels(sample, map, local_from_scan);
   return run_rounds(fine_stage(map.finest(), sample.fine, options.max_iterations), local_from_scan);
 }
 
@@ -162,7 +168,6 @@ FineResult align_sample(const SampledScan& sample, const VoxelMap& map, const Ei
   Eigen::Isometry3d guess = map_from_scan_guess;
   guess.translation() -= map.frame.anchor;
 
-  if (options.start_wide) guess = run_rounds(wide_stage(map.coarsest(), sample.coarse), guess).local_from_scan;
   RoundsResult rounds = align_through_levels(sample, map, guess, options);
   const double share = inlier_share(rounds, sample.fine.size());
   if (options.search_headings && (share < kTrustedInlierShare || is_far(rounds.local_from_scan, guess))) {
@@ -170,6 +175,18 @@ FineResult align_sample(const SampledScan& sample, const VoxelMap& map, const Ei
     if (inlier_share(other, sample.fine.size()) > share) rounds = std::move(other);
   }
   return report(rounds, sample, map);
+}
+
+Eigen::Isometry3d align_coarsely(const SampledScan& sample, const VoxelMap& map,
+                                 const Eigen::Isometry3d& map_from_scan_guess) {
+  check_guess(map_from_scan_guess);
+  if (map.levels.empty()) throw std::invalid_argument("the map has no levels");
+  Eigen::Isometry3d local_from_scan = map_from_scan_guess;
+  local_from_scan.translation() -= map.frame.anchor;
+  local_from_scan = run_rounds(wide_stage(map.coarsest(), sample.coarse), local_from_scan).local_from_scan;
+  local_from_scan = align_on_coarser_levels(sample, map, local_from_scan);
+  local_from_scan.translation() += map.frame.anchor;
+  return local_from_scan;
 }
 
 FineResult align_scan(const PointCloud& scan, const VoxelMap& map, const Eigen::Isometry3d& map_from_scan_guess,

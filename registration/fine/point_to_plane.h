@@ -18,8 +18,7 @@ struct FineOptions {
   double coarse_spacing = 1.5;  ///< [m] of the points used on the coarser levels
   double fine_spacing = 1.0;    ///< [m] of the points used on the finest level; 0.5 m is no better on KITTI streets
   RangeLimits range;
-  int max_iterations = 15;  ///< rounds of matching and solving on each level
-  bool start_wide = false;  ///< begins with residuals of 3 m on the coarsest level: for guesses of the coarse search
+  int max_iterations = 15;      ///< rounds of matching and solving on each level
   bool search_headings = true;  ///< other headings are tried where few points fit; not needed within 1 m and 3 degrees
 
   /// Throws std::invalid_argument naming the value and what is allowed.
@@ -44,6 +43,11 @@ struct FineResult {
 /// rotation.
 FineResult align_sample(const SampledScan& sample, const VoxelMap& map, const Eigen::Isometry3d& map_from_scan_guess,
                         const FineOptions& options = {});
+
+/// Aligns on the coarser levels only, beginning with residuals of 3 m on the coarsest: for guesses of the coarse
+/// search. Good to some centimetres. Throws as align_sample().
+Eigen::Isometry3d align_coarsely(const SampledScan& sample, const VoxelMap& map,
+                                 const Eigen::Isometry3d& map_from_scan_guess);
 
 /// As align_sample(), for all points of a scan.
 FineResult align_scan(const PointCloud& scan, const VoxelMap& map, const Eigen::Isometry3d& map_from_scan_guess,
