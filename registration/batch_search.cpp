@@ -65,14 +65,19 @@ Eigen::Vector3d center_of(std::span<const Eigen::Vector3d> points) {
   return points.empty() ? sum : Eigen::Vector3d(sum / static_cast<double>(points.size()));
 }
 
-// Of candidates that came to the same place only the best stays.
+// Of candidates that came to the same place only the best stays, with the best supported of the guesses that led there.
 std::vector<BatchCandidate> without_repetitions(std::vector<BatchCandidate> candidates, const Eigen::Vector3d& center) {
   std::vector<BatchCandidate> distinct;
   for (BatchCandidate& candidate : candidates) {
-    const bool known = std::any_of(distinct.begin(), distinct.end(), [&](const BatchCandidate& other) {
+    const auto known = std::find_if(distinct.begin(), distinct.end(), [&](const BatchCandidate& other) {
       return are_alike(other.map_from_batch, candidate.map_from_batch, center);
     });
-    if (!known) distinct.push_back(std::move(candidate));
+    if (known == distinct.end()) {
+      distinct.push_back(std::move(candidate));
+    } else if (candidate.num_feature_inliers > known->num_feature_inliers) {
+      known->num_feature_inliers = candidate.num_feature_inliers;
+      known->coarse_guess = candidate.coarse_guess;
+    }
   }
   return distinct;
 }

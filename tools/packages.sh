@@ -11,7 +11,7 @@ build_packages=(
 )
 test_packages=(libbenchmark-dev libgmock-dev libgtest-dev)
 benchmark_packages=(jq time)
-ci_packages=(blender ccache clang-format python3-numpy python3-openvdb)
+ci_packages=(blender clang-format python3-numpy python3-openvdb)
 
 is_installed() {
   [[ $(dpkg-query --show --showformat='${db:Status-Status}' "$1" 2>/dev/null) == installed ]]

@@ -55,7 +55,7 @@ void draw_labels(Image& image, const Eigen::AlignedBox2d& frame, const AxisLabel
   TextStyle vertical = label;
   vertical.is_vertical = true;
   draw_text(image, {frame.center().x(), frame.max().y() + 38}, labels.x, label);
-  draw_text(image, {frame.min().x() - 60, frame.center().y()}, labels.y, vertical);
+  draw_text(image, {frame.min().x() - 76, frame.center().y()}, labels.y, vertical);
   draw_text(image, {frame.min().x(), frame.min().y() - 17}, labels.title,
             {.size = kTitleSize, .ink = {kTextColor}, .is_bold = true});
 }
