@@ -7,6 +7,7 @@
 
 #include "registration/sequence.h"
 #include "tools/cli/progress.h"
+#include "tools/cli/read_scan.h"
 #include "vdbmap/core/error.h"
 
 namespace vdbmap::cli {
@@ -43,17 +44,6 @@ LocalizeReport follow_motion(const std::vector<ScanPlace>& scans, const Eigen::I
     progress.advance();
   }
   return report;
-}
-
-// Damaged content is a scan without a pose; a file that cannot be read at all ends the command.
-std::optional<PointCloud> read_scan(ScanReader& reader, const ScanPlace& scan, std::string& reason) {
-  try {
-    return reader.read(scan).cloud;
-  } catch (const IoError& error) {
-    if (error.kind() != IoError::Kind::kMalformed) throw;
-    reason = error.what();
-    return std::nullopt;
-  }
 }
 
 }  // namespace

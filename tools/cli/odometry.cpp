@@ -20,6 +20,7 @@
 #include "tools/cli/odometry_outputs.h"
 #include "tools/cli/output.h"
 #include "tools/cli/progress.h"
+#include "tools/cli/read_scan.h"
 #include "tools/cli/scan_selection.h"
 #include "tools/cli/stop_request.h"
 #include "vdbmap/core/error.h"
@@ -87,17 +88,6 @@ registration::OdometryOptions odometry_options(const OdometryCommandOptions& opt
   odometry.deskews = !options.has_moved_points;
   odometry.check();
   return odometry;
-}
-
-// A file with bad content is a scan without a pose; one that cannot be read at all ends the command.
-std::optional<PointCloud> read_scan(ScanReader& reader, const ScanPlace& scan, std::string& reason) {
-  try {
-    return reader.read(scan).cloud;
-  } catch (const IoError& error) {
-    if (error.kind() != IoError::Kind::kMalformed) throw;
-    reason = error.what();
-    return std::nullopt;
-  }
 }
 
 OdometryStep step_without_points(std::string reason) {

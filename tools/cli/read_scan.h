@@ -1,0 +1,16 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#pragma once
+
+#include <optional>
+#include <string>
+
+#include "vdbmap/core/point_cloud.h"
+#include "vdbmap/io/scan_sequence.h"
+
+namespace vdbmap::cli {
+
+/// A scan of a sequence; nothing, and the reason, where its content is damaged: the others can still be used. Throws
+/// IoError where the file cannot be read at all.
+std::optional<PointCloud> read_scan(ScanReader& reader, const ScanPlace& scan, std::string& reason);
+
+}  // namespace vdbmap::cli
