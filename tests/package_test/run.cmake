@@ -8,6 +8,8 @@ endfunction()
 
 if(SANITIZE)
   set(flags -fsanitize=${SANITIZE})
+  # The sanitizers' dlopen() does not look where the program's runtime path says.
+  set(ENV{LD_LIBRARY_PATH} ${work}/prefix/lib/vdbmap:$ENV{LD_LIBRARY_PATH})
 endif()
 
 run(${CMAKE_COMMAND} --install ${BUILD_DIR} --prefix ${work}/prefix)

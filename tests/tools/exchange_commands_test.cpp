@@ -7,7 +7,7 @@
 
 #include "tests/support/raw_files.h"
 #include "tests/tools/map_command.h"
-#include "vdbmap/io/vdb_file.h"
+#include "vdbmap/io/vdb/vdb_file.h"
 
 namespace vdbmap::cli {
 namespace {

@@ -13,9 +13,9 @@
 #include "tests/support/run_command.h"
 #include "tests/support/sample_maps.h"
 #include "vdbmap/core/map_builder.h"
-#include "vdbmap/io/channel_codes.h"
-#include "vdbmap/io/map_channels.h"
-#include "vdbmap/io/map_file.h"
+#include "vdbmap/io/vdb/channel_codes.h"
+#include "vdbmap/io/vdb/map_channels.h"
+#include "vdbmap/io/vdb/map_file.h"
 
 namespace vdbmap {
 namespace {

@@ -11,9 +11,9 @@
 #include "tools/cli/command.h"
 #include "tools/cli/map_output.h"
 #include "tools/cli/output.h"
-#include "vdbmap/io/map_channels.h"
 #include "vdbmap/io/map_export.h"
-#include "vdbmap/io/map_file.h"
+#include "vdbmap/io/vdb/map_channels.h"
+#include "vdbmap/io/vdb/map_file.h"
 
 namespace vdbmap::cli {
 namespace {

@@ -7,8 +7,8 @@
 #include "tools/cli/map_output.h"
 #include "tools/cli/map_summary.h"
 #include "tools/cli/output.h"
-#include "vdbmap/io/map_channels.h"
-#include "vdbmap/io/map_file.h"
+#include "vdbmap/io/vdb/map_channels.h"
+#include "vdbmap/io/vdb/map_file.h"
 
 namespace vdbmap::cli {
 namespace {

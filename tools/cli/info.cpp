@@ -8,8 +8,8 @@
 #include "tools/cli/command.h"
 #include "tools/cli/map_summary.h"
 #include "tools/cli/output.h"
-#include "vdbmap/io/map_file.h"
-#include "vdbmap/io/vdb_description.h"
+#include "vdbmap/io/vdb/map_file.h"
+#include "vdbmap/io/vdb/vdb_description.h"
 
 namespace vdbmap::cli {
 namespace {

@@ -16,8 +16,8 @@
 #include "tools/cli/output.h"
 #include "tools/cli/scan_selection.h"
 #include "vdbmap/core/error.h"
-#include "vdbmap/io/map_file.h"
 #include "vdbmap/io/point_reader.h"
+#include "vdbmap/io/vdb/map_file.h"
 
 namespace vdbmap::cli {
 namespace {

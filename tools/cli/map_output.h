@@ -6,7 +6,7 @@
 
 #include <CLI/App.hpp>
 
-#include "vdbmap/io/map_file.h"
+#include "vdbmap/io/vdb/map_file.h"
 
 namespace vdbmap::cli {
 

@@ -14,7 +14,7 @@
 #include "tools/cli/progress.h"
 #include "vdbmap/core/error.h"
 #include "vdbmap/core/map_merge.h"
-#include "vdbmap/io/map_file.h"
+#include "vdbmap/io/vdb/map_file.h"
 
 namespace vdbmap::cli {
 namespace {

@@ -11,7 +11,7 @@
 #include "vdbmap/core/cloud_append.h"
 #include "vdbmap/core/error.h"
 #include "vdbmap/io/map_export.h"
-#include "vdbmap/io/map_file.h"
+#include "vdbmap/io/vdb/map_file.h"
 
 namespace vdbmap::cli {
 namespace {

@@ -13,7 +13,7 @@
 #include "tools/cli/output.h"
 #include "tools/cli/voxel_text.h"
 #include "vdbmap/core/voxel_query.h"
-#include "vdbmap/io/map_file.h"
+#include "vdbmap/io/vdb/map_file.h"
 
 namespace vdbmap::cli {
 namespace {

@@ -20,10 +20,10 @@
 #include "tools/cli/number_list.h"
 #include "tools/cli/output.h"
 #include "vdbmap/core/error.h"
-#include "vdbmap/io/map_file.h"
 #include "vdbmap/io/point_reader.h"
 #include "vdbmap/io/text.h"
 #include "vdbmap/io/trajectory_file.h"
+#include "vdbmap/io/vdb/map_file.h"
 
 namespace vdbmap::cli {
 namespace {

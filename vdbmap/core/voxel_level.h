@@ -8,17 +8,14 @@
 #include <span>
 #include <vector>
 
-#include <openvdb/openvdb.h>
+#include <openvdb/tree/ValueAccessor.h>
 
 #include "vdbmap/core/parallel.h"
 #include "vdbmap/core/voxel.h"
 #include "vdbmap/core/voxel_record.h"
+#include "vdbmap/core/voxel_tree.h"
 
 namespace vdbmap {
-
-/// Which voxels are occupied: an OpenVDB tree of bit masks.
-using VoxelTree = openvdb::MaskTree;
-using VoxelLeaf = VoxelTree::LeafNodeType;
 
 /// Attributes that only some maps know: empty, or one value a voxel in the order of the records.
 struct VoxelChannels {

@@ -31,15 +31,15 @@ std::vector<OutputField> choose_output(const PointCloud& cloud, PcdEncoding enco
   return fields;
 }
 
-std::string type_letter(ScalarType type) { return is_integer(type) ? "U" : "F"; }
+const char* type_letter(ScalarType type) { return is_integer(type) ? "U" : "F"; }
 
 std::string header_text(const std::vector<OutputField>& fields, std::size_t num_points, PcdEncoding encoding) {
   std::string names, sizes, types, counts;
   for (const OutputField& output : fields) {
-    names += " " + output.name;
-    sizes += " " + std::to_string(size_of(output.field.type));
-    types += " " + type_letter(output.field.type);
-    counts += " 1";
+    names.append(" ").append(output.name);
+    sizes.append(" ").append(std::to_string(size_of(output.field.type)));
+    types.append(" ").append(type_letter(output.field.type));
+    counts.append(" 1");
   }
   const std::string count = std::to_string(num_points);
   const std::string data = encoding == PcdEncoding::kAscii    ? "ascii"

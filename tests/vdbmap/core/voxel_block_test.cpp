@@ -4,7 +4,6 @@
 #include <algorithm>
 
 #include <gtest/gtest.h>
-#include <openvdb/openvdb.h>
 
 #include "tests/support/random_points.h"
 #include "vdbmap/core/voxel_assembly.h"
@@ -14,7 +13,7 @@ namespace {
 
 // The voxels in the order in which OpenVDB itself walks a tree of them.
 std::vector<VoxelIndex> in_tree_order(const std::vector<VoxelIndex>& voxels) {
-  openvdb::MaskTree tree;
+  VoxelTree tree;
   for (const VoxelIndex& voxel : voxels) tree.setValueOn(voxel);
   std::vector<VoxelIndex> ordered;
   for (auto it = tree.cbeginValueOn(); it; ++it) ordered.push_back(it.getCoord());

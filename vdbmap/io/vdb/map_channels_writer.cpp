@@ -1,0 +1,134 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include <cmath>
+#include <memory>
+#include <stdexcept>
+#include <string>
+#include <vector>
+
+#include "vdbmap/io/vdb/channel_codes.h"
+#include "vdbmap/io/vdb/map_channels.h"
+#include "vdbmap/io/vdb/map_grids.h"
+#include "vdbmap/io/vdb/map_metadata.h"
+#include "vdbmap/io/vdb/vdb_file.h"
+
+namespace vdbmap {
+namespace {
+
+// A grid over all voxels of the level with the values that value_of(record number) gives.
+template <typename Grid, typename ValueOf>
+typename Grid::Ptr make_channel(const VoxelLevel& level, const ValueOf& value_of) {
+  using Tree = typename Grid::TreeType;
+  const auto tree =
+      std::make_shared<Tree>(level.tree(), openvdb::zeroVal<typename Tree::ValueType>(), openvdb::TopologyCopy());
+  std::vector<typename Tree::LeafNodeType*> targets;
+  tree->getNodes(targets);
+  const std::vector<const VoxelLeaf*> sources = level.leaves();
+  parallel_for(
+      sources.size(),
+      [&](std::size_t i) {
+        for_each_voxel(*sources[i], [&](const VoxelIndex& voxel, std::size_t number) {
+          targets[i]->setValueOnly(voxel, value_of(number));
+        });
+      },
+      64);
+  auto grid = std::make_shared<Grid>(tree);
+  grid->setTransform(transform_of_level(level.voxel_size()));
+  return grid;
+}
+
+float exact_float(std::int32_t value) {
+  const auto rounded = static_cast<float>(value);
+  if (static_cast<double>(rounded) != value) {
+    throw std::invalid_argument("a float cannot hold " + std::to_string(value) + " exactly; export integers as Int32");
+  }
+  return rounded;
+}
+
+// Collects the channels of one level.
+class LevelExport {
+ public:
+  LevelExport(const VoxelMap& map, const VoxelLevel& level, const ChannelOptions& options)
+      : map_(map),
+        level_(level),
+        options_(options),
+        suffix_(level_suffix(level.voxel_size(), &level == &map.finest())) {}
+
+  openvdb::GridCPtrVec grids() {
+    add("density", make_density_grid(level_, options_.density));
+    add_moments();
+    add_vectors("normal", openvdb::VEC_COVARIANT_NORMALIZE, normal_value_of);
+    add("planarity", make_channel<openvdb::FloatGrid>(
+                         level_, [&](std::size_t i) { return planarity_value_of(level_.records()[i]); }));
+    if (map_.has_color) add_vectors("color", openvdb::VEC_INVARIANT, color_value_of);
+    add_optional_channels();
+    return std::move(grids_);
+  }
+
+ private:
+  void add(const std::string& name, const openvdb::GridBase::Ptr& grid) {
+    grid->setName(name + suffix_);
+    grid->insertMeta(metadata_of_frame(map_.frame));
+    grid->insertMeta("voxel_size", openvdb::DoubleMetadata(level_.voxel_size()));
+    grids_.push_back(grid);
+  }
+
+  template <typename ValueOf>
+  void add_vectors(const std::string& name, openvdb::VecType type, const ValueOf& value_of) {
+    const auto grid =
+        make_channel<openvdb::Vec3SGrid>(level_, [&](std::size_t i) { return value_of(level_.records()[i]); });
+    grid->setVectorType(type);
+    add(name, grid);
+  }
+
+  template <typename ValueOf>
+  void add_integers(const std::string& name, const ValueOf& value_of) {
+    if (options_.integers_as_float) {
+      add(name, make_channel<openvdb::FloatGrid>(level_, [&](std::size_t i) { return exact_float(value_of(i)); }));
+    } else {
+      add(name, make_channel<openvdb::Int32Grid>(level_, value_of));
+    }
+  }
+
+  void add_moments() {
+    add_integers("count", [&](std::size_t i) { return static_cast<std::int32_t>(level_.records()[i].count); });
+    add_vectors("mean", openvdb::VEC_INVARIANT,
+                [&](const VoxelRecord& record) { return mean_offset_of(record, level_.voxel_size()); });
+    add_vectors("cov_diag", openvdb::VEC_INVARIANT,
+                [](const VoxelRecord& record) { return openvdb::Vec3f(record.covariance.data()); });
+    add_vectors("cov_offdiag", openvdb::VEC_INVARIANT,
+                [](const VoxelRecord& record) { return openvdb::Vec3f(record.covariance.data() + 3); });
+  }
+
+  void add_optional_channels() {
+    const VoxelChannels& channels = level_.channels();
+    if (!channels.intensities.empty()) {
+      add("intensity",
+          make_channel<openvdb::FloatGrid>(level_, [&](std::size_t i) { return channels.intensities[i]; }));
+    }
+    if (!channels.first_epochs.empty()) {
+      add_integers("first_epoch", [&](std::size_t i) { return channels.first_epochs[i]; });
+    }
+    if (!channels.last_epochs.empty()) {
+      add_integers("last_epoch", [&](std::size_t i) { return channels.last_epochs[i]; });
+    }
+  }
+
+  const VoxelMap& map_;
+  const VoxelLevel& level_;
+  const ChannelOptions& options_;
+  std::string suffix_;
+  openvdb::GridCPtrVec grids_;
+};
+
+}  // namespace
+
+void export_channels(const std::filesystem::path& path, const VoxelMap& map, const ChannelOptions& options) {
+  openvdb::initialize();
+  openvdb::GridCPtrVec grids;
+  for (const VoxelLevel& level : map.levels) {
+    for (const openvdb::GridBase::ConstPtr& grid : LevelExport(map, level, options).grids()) grids.push_back(grid);
+  }
+  write_vdb(path, grids, metadata_of_frame(map.frame));
+}
+
+}  // namespace vdbmap

@@ -1,0 +1,72 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "vdbmap/io/vdb/map_file.h"
+
+#include <algorithm>
+#include <stdexcept>
+
+#include "vdbmap/core/error.h"
+#include "vdbmap/io/vdb/map_grids.h"
+#include "vdbmap/io/vdb/map_metadata.h"
+#include "vdbmap/io/vdb/vdb_file.h"
+#include "vdbmap/io/vdb/voxel_grid.h"
+
+namespace vdbmap {
+namespace {
+
+constexpr const char* kVoxelGridName = "voxels";
+
+void add_grid(openvdb::GridCPtrVec& grids, const openvdb::GridBase::Ptr& grid, const std::string& name,
+              const VoxelMap& map, const VoxelLevel& level) {
+  grid->setName(name);
+  grid->insertMeta(metadata_of_frame(map.frame));
+  grid->insertMeta("voxel_size", openvdb::DoubleMetadata(level.voxel_size()));
+  grids.push_back(grid);
+}
+
+void add_level(openvdb::GridCPtrVec& grids, const VoxelMap& map, const VoxelLevel& level, const SaveOptions& options) {
+  const std::string suffix = level_suffix(level.voxel_size(), &level == &map.finest());
+  add_grid(grids, make_voxel_grid(level, map.has_color), kVoxelGridName + suffix, map, level);
+  add_grid(grids, make_density_grid(level, options.density), "density" + suffix, map, level);
+  if (map.has_color) add_grid(grids, make_color_grid(level), "color" + suffix, map, level);
+}
+
+// Levels are whole multiples of each other and hold the same points.
+void check_levels(const VoxelMap& map, const std::filesystem::path& path) {
+  if (map.levels.empty()) throw IoError::malformed(path, "holds no grid 'voxels' of a map");
+  for (std::size_t i = 0; i < map.levels.size(); ++i) {
+    try {
+      voxels_per_metre(map.levels[i].voxel_size());
+      if (i > 0) level_factor(map.levels[i - 1].voxel_size(), map.levels[i].voxel_size());
+    } catch (const std::invalid_argument& error) {
+      throw IoError::malformed(path, error.what());
+    }
+  }
+}
+
+}  // namespace
+
+void save_map(const std::filesystem::path& path, const VoxelMap& map, const SaveOptions& options) {
+  openvdb::initialize();
+  openvdb::GridCPtrVec grids;
+  for (const VoxelLevel& level : map.levels) add_level(grids, map, level, options);
+  write_vdb(path, grids, metadata_of_frame(map.frame));
+}
+
+VoxelMap load_map(const std::filesystem::path& path) {
+  const VdbContent content = read_vdb(path);
+  VoxelMap map;
+  map.frame = frame_of_metadata(*content.metadata, path);
+  for (const openvdb::GridBase::Ptr& grid : content.grids) {
+    const auto voxels = openvdb::gridPtrCast<openvdb::points::PointDataGrid>(grid);
+    if (!voxels || !voxels->getName().starts_with(kVoxelGridName)) continue;
+    ReadLevel read = read_voxel_grid(*voxels, path);
+    map.has_color |= read.has_color;
+    map.levels.push_back(std::move(read.level));
+  }
+  std::sort(map.levels.begin(), map.levels.end(),
+            [](const VoxelLevel& a, const VoxelLevel& b) { return a.voxel_size() < b.voxel_size(); });
+  check_levels(map, path);
+  return map;
+}
+
+}  // namespace vdbmap

@@ -1,0 +1,24 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#pragma once
+
+#include <string>
+
+#include "vdbmap/core/voxel_level.h"
+#include "vdbmap/io/vdb/standard_grids.h"
+
+/// Grids that every reader of .vdb files understands, one value a voxel.
+namespace vdbmap {
+
+/// What is added to the grid names of a level: "" for the finest of a map, "_1m" or "_500mm" for the others.
+std::string level_suffix(double voxel_size, bool is_finest);
+
+/// The transform of a level's grids: voxel (i,j,k) covers [i s, (i+1) s), so OpenVDB's cell centres are shifted by s/2.
+openvdb::math::Transform::Ptr transform_of_level(double voxel_size);
+
+/// A fog of one density in every voxel, for renderers.
+openvdb::FloatGrid::Ptr make_density_grid(const VoxelLevel& level, float density);
+
+/// Mean colour of every voxel, linear RGB 0..1.
+openvdb::Vec3SGrid::Ptr make_color_grid(const VoxelLevel& level);
+
+}  // namespace vdbmap

@@ -1,0 +1,56 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "vdbmap/io/vdb/map_metadata.h"
+
+#include <array>
+#include <stdexcept>
+
+#include "vdbmap/core/error.h"
+
+namespace vdbmap {
+namespace {
+
+constexpr std::array kAnchorNames = {"anchor_x", "anchor_y", "anchor_z"};
+constexpr const char* kFormatName = "map_format";
+constexpr const char* kEpsgName = "epsg";
+
+}  // namespace
+
+openvdb::MetaMap metadata_of_frame(const MapFrame& frame) {
+  openvdb::MetaMap metadata;
+  metadata.insertMeta("creator", openvdb::StringMetadata("vdbmap"));
+  metadata.insertMeta(kFormatName, openvdb::Int32Metadata(kMapFormat));
+  for (int axis = 0; axis < 3; ++axis) {
+    metadata.insertMeta(kAnchorNames[axis], openvdb::DoubleMetadata(frame.anchor[axis]));
+  }
+  if (frame.epsg) metadata.insertMeta(kEpsgName, openvdb::Int32Metadata(*frame.epsg));
+  return metadata;
+}
+
+MapFrame frame_of_metadata(const openvdb::MetaMap& metadata, const std::filesystem::path& path) {
+  const auto format = metadata.getMetadata<openvdb::Int32Metadata>(kFormatName);
+  if (!format) throw IoError::malformed(path, "is an OpenVDB file but not a map of vdbmap: it has no 'map_format'");
+  if (format->value() != kMapFormat) {
+    throw IoError::malformed(
+        path, "has map format " + std::to_string(format->value()) + ", expected " + std::to_string(kMapFormat));
+  }
+  MapFrame frame;
+  for (int axis = 0; axis < 3; ++axis) {
+    const auto value = metadata.getMetadata<openvdb::DoubleMetadata>(kAnchorNames[axis]);
+    if (!value) throw IoError::malformed(path, std::string("lacks '") + kAnchorNames[axis] + "'");
+    frame.anchor[axis] = value->value();
+  }
+  const auto epsg = metadata.getMetadata<openvdb::Int32Metadata>(kEpsgName);
+  if (epsg) frame.epsg = epsg->value();
+  try {
+    check_anchor(frame.anchor);
+  } catch (const std::invalid_argument& error) {
+    throw IoError::malformed(path, error.what());
+  }
+  return frame;
+}
+
+bool has_map_format(const openvdb::MetaMap& metadata) {
+  return metadata.getMetadata<openvdb::Int32Metadata>(kFormatName) != nullptr;
+}
+
+}  // namespace vdbmap

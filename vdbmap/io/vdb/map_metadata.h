@@ -1,0 +1,23 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#pragma once
+
+#include <filesystem>
+
+#include "vdbmap/core/voxel_map.h"
+#include "vdbmap/io/vdb/standard_grids.h"
+
+namespace vdbmap {
+
+/// Version of our files; files of another one are refused. Version 1 had colours of 16-bit fixed point.
+inline constexpr std::int32_t kMapFormat = 2;
+
+/// Anchor, EPSG code, format and creator, as metadata of a file or a grid.
+openvdb::MetaMap metadata_of_frame(const MapFrame& frame);
+
+/// Reads the same. Throws IoError where `metadata` is not of a map, or of a newer format.
+MapFrame frame_of_metadata(const openvdb::MetaMap& metadata, const std::filesystem::path& path);
+
+/// Whether the metadata is that of a map of ours.
+bool has_map_format(const openvdb::MetaMap& metadata);
+
+}  // namespace vdbmap

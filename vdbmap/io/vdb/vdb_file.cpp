@@ -1,0 +1,131 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "vdbmap/io/vdb/vdb_file.h"
+
+#include <array>
+#include <cerrno>
+#include <cstring>
+#include <fstream>
+#include <string>
+
+#include <xxhash.h>
+
+#include "vdbmap/core/error.h"
+#include "vdbmap/io/atomic_file.h"
+#include "vdbmap/io/vdb/vdb_outline.h"
+
+namespace vdbmap {
+namespace {
+
+// After 8 bytes magic number, 4 file version, 8 library version and 1 grid offsets comes the id.
+constexpr std::size_t kIdBegin = 21;
+constexpr std::size_t kIdSize = 36;
+// An id that begins so is the checksum of the rest: "vdbmap" in ASCII codes.
+constexpr std::string_view kIdPrefix = "7664626d-6170-";
+
+// The archive that openvdb::io::File writes, into a stream of ours: File itself does not see a full disk.
+class SeekableArchive : public openvdb::io::Archive {
+ public:
+  void write_to(std::ostream& stream, const openvdb::GridCPtrVec& grids, const openvdb::MetaMap& metadata) const {
+    Archive::write(stream, grids, /*seekable=*/true, metadata);
+  }
+};
+
+std::ifstream open_for_reading(const std::filesystem::path& path) {
+  std::ifstream stream(path, std::ios::binary);
+  if (!stream) throw IoError::system(path, "cannot open", errno);
+  return stream;
+}
+
+std::string read_id(const std::filesystem::path& path) {
+  std::ifstream stream = open_for_reading(path);
+  std::string id(kIdSize, '\0');
+  stream.seekg(kIdBegin);
+  stream.read(id.data(), kIdSize);
+  return id;
+}
+
+// The id that belongs to the content of a file: its checksum without the id itself, in the form of a UUID.
+std::string id_of_content(const std::filesystem::path& path) {
+  std::ifstream stream = open_for_reading(path);
+  XXH3_state_t* state = XXH3_createState();
+  XXH3_128bits_reset(state);
+  std::array<char, 1 << 16> chunk;
+  bool is_first = true;
+  while (stream.read(chunk.data(), chunk.size()) || stream.gcount() > 0) {
+    const auto size = static_cast<std::size_t>(stream.gcount());
+    if (is_first && size >= kIdBegin + kIdSize) std::memset(chunk.data() + kIdBegin, 0, kIdSize);
+    is_first = false;
+    XXH3_128bits_update(state, chunk.data(), size);
+  }
+  const XXH128_hash_t hash = XXH3_128bits_digest(state);
+  XXH3_freeState(state);
+
+  std::array<char, kIdSize + 1> id;
+  std::snprintf(id.data(), id.size(), "%.*s%04x-%04x-%012llx", static_cast<int>(kIdPrefix.size()), kIdPrefix.data(),
+                static_cast<unsigned>(hash.high64 >> 16 & 0xffff), static_cast<unsigned>(hash.high64 & 0xffff),
+                static_cast<unsigned long long>(hash.low64 & 0xffffffffffff));
+  return id.data();
+}
+
+void write_grids(const std::filesystem::path& path, const openvdb::GridCPtrVec& grids,
+                 const openvdb::MetaMap& metadata) {
+  SeekableArchive archive;
+  archive.setCompression(openvdb::io::COMPRESS_ACTIVE_MASK | openvdb::io::COMPRESS_BLOSC);
+  std::ofstream stream(path, std::ios::binary | std::ios::trunc);
+  stream.exceptions(std::ios::badbit | std::ios::failbit);
+  archive.write_to(stream, grids, metadata);
+  stream.close();
+}
+
+void replace_id(const std::filesystem::path& path) {
+  const std::string id = id_of_content(path);
+  std::fstream stream(path, std::ios::binary | std::ios::in | std::ios::out);
+  stream.exceptions(std::ios::badbit | std::ios::failbit);
+  stream.seekp(kIdBegin);
+  stream.write(id.data(), kIdSize);
+  stream.close();
+}
+
+// A file of ours is compared with its checksum.
+void check_content(const std::filesystem::path& path) {
+  const std::string id = read_id(path);
+  if (id.starts_with(kIdPrefix) && id != id_of_content(path)) {
+    throw IoError::malformed(path, "is damaged: its content does not match its checksum");
+  }
+}
+
+}  // namespace
+
+VdbContent read_vdb(const std::filesystem::path& path) {
+  read_vdb_outline(path);
+  check_content(path);
+  openvdb::initialize();
+  try {
+    openvdb::io::File file(path.string());
+    file.open(/*delayLoad=*/false);
+    VdbContent content;
+    content.grids = *file.getGrids();
+    content.metadata = file.getMetadata();
+    return content;
+  } catch (const std::exception& error) {  // damage also ends in bad_alloc, and in messages of kilobytes
+    constexpr std::size_t kMaxMessage = 80;
+    const std::string message = std::string(error.what()).substr(0, kMaxMessage);
+    throw IoError::malformed(path, "cannot be read as OpenVDB: " + message);
+  }
+}
+
+void write_vdb(const std::filesystem::path& path, const openvdb::GridCPtrVec& grids, const openvdb::MetaMap& metadata) {
+  openvdb::initialize();
+  AtomicFile target(path);
+  try {
+    write_grids(target.temporary_path(), grids, metadata);
+    replace_id(target.temporary_path());
+  } catch (const std::ios_base::failure&) {
+    throw IoError::system(path, "cannot write", errno);
+  } catch (const openvdb::Exception& error) {
+    throw IoError::system(path, std::string("cannot write (") + error.what() + ")", errno);
+  }
+  target.commit();
+}
+
+}  // namespace vdbmap

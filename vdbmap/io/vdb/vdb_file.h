@@ -1,0 +1,24 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#pragma once
+
+#include <filesystem>
+
+#include "vdbmap/io/vdb/standard_grids.h"
+
+namespace vdbmap {
+
+/// Grids and file metadata of any .vdb file.
+struct VdbContent {
+  openvdb::GridPtrVec grids;
+  openvdb::MetaMap::Ptr metadata;
+};
+
+/// Reads a whole .vdb file. One that write_vdb() wrote is compared with its checksum first. Throws IoError for a file
+/// that is missing, is no .vdb file or is damaged.
+VdbContent read_vdb(const std::filesystem::path& path);
+
+/// Writes grids atomically, compressed as Houdini does (active values, Blosc). Equal content gives equal bytes: the
+/// random id that OpenVDB puts into every file is replaced by a checksum of the rest. Throws IoError.
+void write_vdb(const std::filesystem::path& path, const openvdb::GridCPtrVec& grids, const openvdb::MetaMap& metadata);
+
+}  // namespace vdbmap

@@ -1,0 +1,174 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include <algorithm>
+#include <numeric>
+#include <optional>
+#include <string>
+
+#include "vdbmap/core/error.h"
+#include "vdbmap/core/voxel_assembly.h"
+#include "vdbmap/io/vdb/voxel_attributes.h"
+#include "vdbmap/io/vdb/voxel_grid.h"
+
+namespace vdbmap {
+namespace {
+
+namespace points = openvdb::points;
+
+// A voxel as the file gives it, in the order of the file.
+struct ReadVoxel {
+  VoxelIndex index;
+  VoxelKey key;
+  VoxelRecord record;
+};
+
+// Which attributes a leaf has beyond the required ones: all leaves must agree.
+struct OptionalAttributes {
+  bool color = false;
+  bool intensity = false;
+  bool first_epoch = false;
+  bool last_epoch = false;
+
+  bool operator==(const OptionalAttributes&) const = default;
+};
+
+const points::AttributeArray* find_array(const PointLeaf& leaf, const char* name, const openvdb::NamePair& type) {
+  const std::size_t position = leaf.attributeSet().find(name);
+  if (position == points::AttributeSet::INVALID_POS) return nullptr;
+  const points::AttributeArray* array = leaf.attributeSet().getConst(position);
+  array->loadData();
+  const bool usable = array->type() == type && array->stride() == 1 && array->size() == leaf.getLastValue();
+  return usable ? array : nullptr;
+}
+
+// Reads the leaves of one grid; every refusal names the grid and the attribute.
+class GridReader {
+ public:
+  GridReader(const points::PointDataGrid& grid, const std::filesystem::path& path) : grid_(grid), path_(path) {}
+
+  ReadLevel read() {
+    for (auto leaf = grid_.tree().cbeginLeaf(); leaf; ++leaf) {
+      if (leaf->getLastValue() > 0) read_leaf(*leaf);
+    }
+    return {assemble(), optional_.value_or(OptionalAttributes()).color};
+  }
+
+ private:
+  [[noreturn]] void fail(const std::string& reason) const {
+    throw IoError::malformed(path_, "grid '" + grid_.getName() + "' " + reason);
+  }
+
+  template <typename Array>
+  CodeReader<Array> require(const PointLeaf& leaf, const char* name) const {
+    const points::AttributeArray* array = find_array(leaf, name, Array::attributeType());
+    const auto& [value_type, codec] = Array::attributeType();
+    if (!array) fail(std::string("lacks attribute '") + name + "' of type " + value_type + ", codec " + codec);
+    return CodeReader<Array>(*array);
+  }
+
+  void read_leaf(const PointLeaf& leaf) {
+    const std::size_t first = voxels_.size();
+    voxels_.resize(first + leaf.getLastValue());
+    const std::span voxels = std::span(voxels_).subspan(first);
+    read_places(leaf, voxels);
+    read_records(leaf, voxels);
+    check_same_attributes(leaf);
+    if (optional_->color) read_color(leaf, voxels);
+    if (optional_->intensity) read_channel<FloatArray>(leaf, "intensity", channels_.intensities);
+    if (optional_->first_epoch) read_channel<IntArray>(leaf, "first_epoch", channels_.first_epochs);
+    if (optional_->last_epoch) read_channel<IntArray>(leaf, "last_epoch", channels_.last_epochs);
+  }
+
+  // The cell and the fixed-point position in it give the voxel and the mean within it.
+  void read_places(const PointLeaf& leaf, std::span<ReadVoxel> voxels) const {
+    const auto position = require<PositionArray>(leaf, "P");
+    std::size_t i = 0;
+    for (openvdb::Index cell = 0; cell < PointLeaf::SIZE; ++cell) {
+      const std::size_t end = leaf.getValue(cell);
+      if (end < i || end > voxels.size()) fail("has broken point offsets");
+      const VoxelIndex first_voxel = first_child_of_voxel(leaf.offsetToGlobalCoord(cell), kVoxelsPerCell);
+      for (; i < end; ++i) place(voxels[i], first_voxel, position[i]);
+    }
+  }
+
+  void place(ReadVoxel& voxel, const VoxelIndex& first_voxel, const openvdb::math::Vec3<std::uint16_t>& code) const {
+    for (int axis = 0; axis < 3; ++axis) {
+      voxel.index[axis] = first_voxel[axis] + code[axis] / kMeanSteps;
+      voxel.record.mean_code[axis] = static_cast<std::uint16_t>(code[axis] % kMeanSteps);
+    }
+    if (!is_addressable(voxel.index)) fail("has a voxel beyond the addressable range");
+    voxel.key = key_of_voxel(voxel.index);
+  }
+
+  void read_records(const PointLeaf& leaf, std::span<ReadVoxel> voxels) const {
+    const auto cov_diag = require<VectorArray>(leaf, "cov_diag");
+    const auto cov_offdiag = require<VectorArray>(leaf, "cov_offdiag");
+    const auto count = require<IntArray>(leaf, "count");
+    const auto normal = require<NormalArray>(leaf, "N");
+    const auto planarity = require<ShareArray>(leaf, "planarity");
+    for (std::size_t i = 0; i < voxels.size(); ++i) {
+      if (count[i] < 1) fail("has a voxel with count " + std::to_string(count[i]));
+      VoxelRecord& record = voxels[i].record;
+      record.covariance = {cov_diag[i].x(),    cov_diag[i].y(),    cov_diag[i].z(),
+                           cov_offdiag[i].x(), cov_offdiag[i].y(), cov_offdiag[i].z()};
+      record.count = static_cast<std::uint32_t>(count[i]);
+      record.normal_code = normal[i];
+      record.planarity_code = planarity[i];
+    }
+  }
+
+  void check_same_attributes(const PointLeaf& leaf) {
+    const OptionalAttributes found{find_array(leaf, "Cd", VectorArray::attributeType()) != nullptr,
+                                   find_array(leaf, "intensity", FloatArray::attributeType()) != nullptr,
+                                   find_array(leaf, "first_epoch", IntArray::attributeType()) != nullptr,
+                                   find_array(leaf, "last_epoch", IntArray::attributeType()) != nullptr};
+    if (optional_.value_or(found) != found) fail("has attributes that only some of its leaves have");
+    optional_ = found;
+  }
+
+  void read_color(const PointLeaf& leaf, std::span<ReadVoxel> voxels) const {
+    const auto color = require<VectorArray>(leaf, "Cd");
+    for (std::size_t i = 0; i < voxels.size(); ++i) {
+      set_color(voxels[i].record, {color[i].x(), color[i].y(), color[i].z()});
+    }
+  }
+
+  template <typename Array, typename Value>
+  void read_channel(const PointLeaf& leaf, const char* name, std::vector<Value>& values) const {
+    const auto codes = require<Array>(leaf, name);
+    for (std::size_t i = 0; i < leaf.getLastValue(); ++i) values.push_back(codes[i]);
+  }
+
+  // From the order of cells into the order of voxels.
+  VoxelLevel assemble() const {
+    std::vector<std::uint32_t> order(voxels_.size());
+    std::iota(order.begin(), order.end(), 0u);
+    parallel_sort(order, [&](auto a, auto b) { return voxels_[a].key < voxels_[b].key; });
+
+    VoxelAssembly assembly(grid_.voxelSize().x() / kVoxelsPerCell, voxels_.size());
+    for (const std::uint32_t i : order) {
+      if (!assembly.add(voxels_[i].index, voxels_[i].record)) fail("holds a voxel twice");
+    }
+    const auto reorder = [&](const auto& values, auto& target) {
+      if (values.empty()) return;
+      for (const std::uint32_t i : order) target.push_back(values[i]);
+    };
+    reorder(channels_.intensities, assembly.channels().intensities);
+    reorder(channels_.first_epochs, assembly.channels().first_epochs);
+    reorder(channels_.last_epochs, assembly.channels().last_epochs);
+    return assembly.finish();
+  }
+
+  const points::PointDataGrid& grid_;
+  const std::filesystem::path& path_;
+  std::vector<ReadVoxel> voxels_;
+  VoxelChannels channels_;
+  std::optional<OptionalAttributes> optional_;
+};
+
+}  // namespace
+
+ReadLevel read_voxel_grid(const points::PointDataGrid& grid, const std::filesystem::path& path) {
+  return GridReader(grid, path).read();
+}
+
+}  // namespace vdbmap
