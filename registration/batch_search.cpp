@@ -8,6 +8,7 @@
 
 #include <Eigen/Eigenvalues>
 
+#include "registration/percent.h"
 #include "vdbmap/core/parallel.h"
 
 namespace vdbmap::registration {
@@ -16,8 +17,6 @@ namespace {
 // Of the hypotheses, the most that are aligned: the true one has been the first or second on every street tried.
 constexpr std::size_t kMaxAligned = 6;
 constexpr std::size_t kMaxAlignedFinely = 2;  // the best and its rival
-
-std::string percent(double share) { return std::to_string(std::lround(100 * share)) + " %"; }
 
 void sort_by_agreement(std::vector<BatchCandidate>& candidates) {
   std::stable_sort(candidates.begin(), candidates.end(),

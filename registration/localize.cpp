@@ -1,13 +1,12 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "registration/localize.h"
 
-#include <cmath>
 #include <stdexcept>
+
+#include "registration/percent.h"
 
 namespace vdbmap::registration {
 namespace {
-
-std::string percent(double share) { return std::to_string(std::lround(100 * share)) + " %"; }
 
 std::string reason_not_found(const FineResult& fine, const FoundCriteria& criteria) {
   if (fine.num_points == 0) return "no point lies within the range limits";

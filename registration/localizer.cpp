@@ -7,19 +7,13 @@
 #include <utility>
 
 #include "registration/batch_builder.h"
+#include "registration/percent.h"
 #include "vdbmap/core/parallel.h"
 
 namespace vdbmap::registration {
 namespace {
 
 constexpr double kUprightTilt_deg = 10;
-
-// What is kept of a scan until the sequence ends.
-struct KeptScan {
-  SampledScan sample;
-  Eigen::Isometry3d odometry_from_scan;
-  bool follows = true;
-};
 
 std::vector<Ray> rays_of(const SampledScan& sample) {
   constexpr std::size_t kRays = 500;
@@ -29,13 +23,7 @@ std::vector<Ray> rays_of(const SampledScan& sample) {
   return rays;
 }
 
-Eigen::Isometry3d step_between(const KeptScan& previous, const KeptScan& scan) {
-  return previous.odometry_from_scan.inverse() * scan.odometry_from_scan;
-}
-
 double angle_of(const Eigen::Isometry3d& motion) { return Eigen::AngleAxisd(motion.linear()).angle(); }
-
-std::string percent(double share) { return std::to_string(std::lround(100 * share)) + " %"; }
 
 std::string reason_not_found(const Evidence& evidence, const FoundCriteria& criteria) {
   if (evidence.num_points == 0) return "no point lies within the range limits";
@@ -50,6 +38,13 @@ std::string reason_not_found(const Evidence& evidence, const FoundCriteria& crit
 using Poses = std::vector<std::optional<Eigen::Isometry3d>>;
 
 struct Localizer::State {
+  /// What is kept of a scan until the sequence ends.
+  struct KeptScan {
+    SampledScan sample;
+    Eigen::Isometry3d odometry_from_scan;
+    bool follows = true;
+  };
+
   const VoxelMap* map;
   LocalizerOptions options;
   CoarseMap coarse_map;
@@ -69,6 +64,10 @@ struct Localizer::State {
   std::vector<PoseEstimate> join(const Poses& poses, std::span<const FineResult> fine) const;
   SequenceScan judge(std::size_t number, const PoseEstimate& pose, const FineResult& fine) const;
   std::optional<std::size_t> linked(std::size_t number, bool forward) const;
+
+  static Eigen::Isometry3d step_between(const KeptScan& previous, const KeptScan& scan) {
+    return previous.odometry_from_scan.inverse() * scan.odometry_from_scan;
+  }
 };
 
 void Localizer::State::begin_batch() {
@@ -269,7 +268,7 @@ void Localizer::add(const OdometryScan& scan) {
   SequenceBatch& batch = state.batches.back();
   ++batch.count;
   state.open_batch->add(scan.points_in_scan, state.scans.back().sample,
-                        step_between(state.scans[batch.first], state.scans.back()));
+                        State::step_between(state.scans[batch.first], state.scans.back()));
 }
 
 SequenceResult Localizer::finish() {

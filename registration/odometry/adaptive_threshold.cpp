@@ -5,17 +5,11 @@
 #include <stdexcept>
 #include <string>
 
+#include "registration/odometry/require_positive.h"
 #include "registration/rigid_motion.h"
 
 namespace vdbmap::registration {
-namespace {
-
-void require_positive(const char* name, double value) {
-  if (value > 0 && std::isfinite(value)) return;
-  throw std::invalid_argument(std::string(name) + " is " + std::to_string(value) + ", expected more than 0 m");
-}
-
-}  // namespace
+namespace {}  // namespace
 
 double deviation_at_range(const Eigen::Isometry3d& motion, double max_range) {
   const double angle = twist_of_motion(motion).head<3>().norm();

@@ -9,6 +9,7 @@
 #include <utility>
 
 #include "registration/odometry/wide_search.h"
+#include "registration/percent.h"
 
 namespace vdbmap::registration {
 namespace {
@@ -25,8 +26,6 @@ constexpr double kMinRefoundShare = 0.8;  // the same after a wide search, which
 double inlier_share(const PointToPointResult& result, std::size_t num_points) {
   return static_cast<double>(result.matches.num_inliers) / static_cast<double>(num_points);
 }
-
-std::string percent(double share) { return std::to_string(std::lround(100 * share)) + " %"; }
 
 std::string reason_for_few(const PointCloud& scan, std::size_t num_points, const OdometryOptions& options) {
   if (scan.empty()) return "it holds no points";

@@ -10,6 +10,7 @@
 #include <Eigen/Cholesky>
 #include <Eigen/LU>
 
+#include "registration/odometry/require_positive.h"
 #include "vdbmap/core/parallel.h"
 
 namespace vdbmap::registration {
@@ -106,11 +107,6 @@ Matrix6d scatter_of(std::span<const Eigen::Vector3d> points_in_scan, const Local
     scatter += part.sum * part.sum.transpose();
   }
   return scatter;
-}
-
-void require_positive(const char* name, double value) {
-  if (value > 0) return;
-  throw std::invalid_argument(std::string(name) + " is " + std::to_string(value) + ", expected more than 0");
 }
 
 }  // namespace

@@ -21,18 +21,18 @@ namespace {
 // The whole drives, or their first scans where they would take minutes.
 constexpr std::size_t kMaxScans = test::kIsSanitized ? 8 : 64;
 
-struct Drive {
+struct SequenceDrive {
   VoxelMap map;                   // of the even scans
   std::vector<PointCloud> scans;  // the odd ones
   std::vector<Eigen::Isometry3d> map_from_scan;
 };
 
-std::optional<Drive> load(const std::string& name) {
+std::optional<SequenceDrive> load(const std::string& name) {
   const auto data = test::real_data_folder();
   if (!data || !std::filesystem::is_directory(*data / name / "velodyne")) return std::nullopt;
   const auto files = list_point_files({*data / name / "velodyne"});
   const Trajectory poses = read_trajectory(*data / name / "poses.txt");
-  Drive drive;
+  SequenceDrive drive;
   MapBuilder builder{BuildOptions()};
   for (std::size_t i = 0; i < std::min(files.size(), kMaxScans); ++i) {
     PointCloud scan = read_points(files[i]).cloud;
@@ -49,12 +49,12 @@ std::optional<Drive> load(const std::string& name) {
 
 class SequenceKitti : public testing::Test {
  protected:
-  static const std::optional<Drive>& city() {
-    static const std::optional<Drive> drive = load("kitti_drive5");
+  static const std::optional<SequenceDrive>& city() {
+    static const std::optional<SequenceDrive> drive = load("kitti_drive5");
     return drive;
   }
-  static const std::optional<Drive>& residential() {
-    static const std::optional<Drive> drive = load("kitti00");
+  static const std::optional<SequenceDrive>& residential() {
+    static const std::optional<SequenceDrive> drive = load("kitti00");
     return drive;
   }
 
@@ -70,7 +70,7 @@ PointCloud turned(PointCloud scan, double yaw) {
   return scan;
 }
 
-SequenceResult localize(const Drive& drive, const VoxelMap& map, double yaw, std::size_t batch_size) {
+SequenceResult localize(const SequenceDrive& drive, const VoxelMap& map, double yaw, std::size_t batch_size) {
   LocalizerOptions options;
   options.batch_size = batch_size;
   SequenceLocalizer localizer(map, options);
@@ -79,7 +79,7 @@ SequenceResult localize(const Drive& drive, const VoxelMap& map, double yaw, std
 }
 
 // What the issue asks: 0.10 m and 0.5 degrees.
-void expect_found(const Drive& drive, double yaw, std::size_t batch_size) {
+void expect_found(const SequenceDrive& drive, double yaw, std::size_t batch_size) {
   const SequenceResult result = localize(drive, drive.map, yaw, batch_size);
   const Eigen::Isometry3d scan_from_turned(Eigen::AngleAxisd(-yaw, Eigen::Vector3d::UnitZ()));
   for (std::size_t i = 0; i < drive.scans.size(); ++i) {

@@ -51,6 +51,24 @@ std::string difference(const VoxelLevel& a, const VoxelLevel& b) {
 
 }  // namespace
 
+BuildOptions anchored(const Eigen::Vector3d& anchor) {
+  BuildOptions options;
+  options.anchor = anchor;
+  return options;
+}
+
+VoxelMap map_of_voxels(const std::vector<VoxelIndex>& voxels) {
+  PointCloud cloud;
+  for (const VoxelIndex& voxel : voxels) cloud.positions.push_back(center_of_voxel(voxel, 0.1));
+  return build_map(cloud, anchored(Eigen::Vector3d::Zero()));
+}
+
+VoxelLevel coarse_level(const PointCloud& cloud) {
+  BuildOptions options = anchored(Eigen::Vector3d::Zero());
+  options.voxel_sizes = {1.0};
+  return std::move(build_map(cloud, options).levels.front());
+}
+
 VoxelMap sample_map() {
   BuildOptions options;
   options.anchor = kAnchor;

@@ -122,22 +122,22 @@ TEST_F(Evaluate, SelectsLinesOfTheTruth) {
   const CommandResult result =
       vdbmap({"evaluate", odd, poses_file("truth.txt", 4), "--every", "2", "--offset", "1", "--json"});
   ASSERT_EQ(result.exit_code, 0) << result.err;
-  const auto json = nlohmann::json::parse(result.out);
-  EXPECT_EQ(json["num_poses"], 2);
-  EXPECT_EQ(json["num_missing"], 0);
-  EXPECT_EQ(json["xy_m"]["median"], 1.0);
-  EXPECT_EQ(json["poses"].size(), 2U);
-  EXPECT_EQ(json["success"][1]["rate"], 1.0);
+  const auto report = nlohmann::json::parse(result.out);
+  EXPECT_EQ(report["num_poses"], 2);
+  EXPECT_EQ(report["num_missing"], 0);
+  EXPECT_EQ(report["xy_m"]["median"], 1.0);
+  EXPECT_EQ(report["poses"].size(), 2U);
+  EXPECT_EQ(report["success"][1]["rate"], 1.0);
 }
 
 TEST_F(Evaluate, WithoutAnyEstimateTheStatisticsAreNull) {
   std::ofstream(folder_ / "lost.txt") << "nan nan nan nan nan nan nan nan nan nan nan nan\n";
   const CommandResult result = vdbmap({"evaluate", folder_ / "lost.txt", poses_file("truth.txt", 1), "--json"});
   ASSERT_EQ(result.exit_code, 0) << result.err;
-  const auto json = nlohmann::json::parse(result.out);
-  EXPECT_EQ(json["num_missing"], 1);
-  EXPECT_TRUE(json["xy_m"]["median"].is_null());
-  EXPECT_TRUE(json["poses"][0].is_null());
+  const auto report = nlohmann::json::parse(result.out);
+  EXPECT_EQ(report["num_missing"], 1);
+  EXPECT_TRUE(report["xy_m"]["median"].is_null());
+  EXPECT_TRUE(report["poses"][0].is_null());
 }
 
 TEST_F(Evaluate, LengthsThatDoNotAgreeAreBadInput) {

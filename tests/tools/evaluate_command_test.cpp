@@ -55,14 +55,14 @@ TEST_F(EvaluateCommand, WritesPlotAndJsonBesideTheTable) {
   ASSERT_EQ(result.exit_code, 0) << result.err;
   EXPECT_TRUE(result.out.starts_with("error  ")) << result.out;
   EXPECT_EQ(test::read_picture(folder_ / "evaluation.png").width(), 1600);
-  const auto json = nlohmann::json::parse(test::read_raw(folder_ / "evaluation.json"));
-  EXPECT_NEAR(json["xy_m"]["max"], 0.05, 1e-9);
-  EXPECT_NEAR(json["z_m"]["max"], 0.005, 1e-9);
-  EXPECT_NEAR(json["aligned"]["translation_m"]["rms"], 0, 1e-9);
-  EXPECT_EQ(json["relative"].size(), 3U);  // the way is 30 m long
-  EXPECT_EQ(json["relative"][1]["length_m"], 5);
-  EXPECT_EQ(json["kitti"]["num_segments"], 0);
-  EXPECT_TRUE(json["kitti"]["translation_percent"].is_null());
+  const auto report = nlohmann::json::parse(test::read_raw(folder_ / "evaluation.json"));
+  EXPECT_NEAR(report["xy_m"]["max"], 0.05, 1e-9);
+  EXPECT_NEAR(report["z_m"]["max"], 0.005, 1e-9);
+  EXPECT_NEAR(report["aligned"]["translation_m"]["rms"], 0, 1e-9);
+  EXPECT_EQ(report["relative"].size(), 3U);  // the way is 30 m long
+  EXPECT_EQ(report["relative"][1]["length_m"], 5);
+  EXPECT_EQ(report["kitti"]["num_segments"], 0);
+  EXPECT_TRUE(report["kitti"]["translation_percent"].is_null());
 }
 
 TEST_F(EvaluateCommand, JsonWithoutAFileIsPrintedWhereverItStands) {
@@ -90,11 +90,11 @@ TEST_F(EvaluateCommand, TumFilesAreComparedByTime) {
   const std::string estimate = poses_file("estimate.tum", 6, 0.5, {0, 3}, TrajectoryFormat::kTum);
   const CommandResult result = evaluate({estimate, truth, "--json"});
   ASSERT_EQ(result.exit_code, 0) << result.err;
-  const auto json = nlohmann::json::parse(result.out);
-  EXPECT_EQ(json["num_poses"], 6);
-  EXPECT_EQ(json["num_missing"], 2);
-  EXPECT_TRUE(json["poses"][3].is_null());
-  EXPECT_NEAR(json["xy_m"]["max"], 0.5, 1e-9);
+  const auto report = nlohmann::json::parse(result.out);
+  EXPECT_EQ(report["num_poses"], 6);
+  EXPECT_EQ(report["num_missing"], 2);
+  EXPECT_TRUE(report["poses"][3].is_null());
+  EXPECT_NEAR(report["xy_m"]["max"], 0.5, 1e-9);
 }
 
 TEST_F(EvaluateCommand, TimesThatDifferALittleNeedTheOption) {
@@ -132,9 +132,10 @@ TEST_F(EvaluateCommand, BadInputIsToldInOneLine) {
 TEST_F(EvaluateCommand, OutputsThatCannotBeWrittenAreToldBeforeAnyOther) {
   const std::string poses = poses_file("poses.txt", 2);
   const std::string plot = folder_ / "missing" / "plot.png";
-  const std::string json = folder_ / "evaluation.json";
-  expect_one_line_error(evaluate({poses, poses, "--plot", plot, "--json", json}), ExitCode::kInputOutputFailed, plot);
-  EXPECT_FALSE(std::filesystem::exists(json));
+  const std::string json_file = folder_ / "evaluation.json";
+  expect_one_line_error(evaluate({poses, poses, "--plot", plot, "--json", json_file}), ExitCode::kInputOutputFailed,
+                        plot);
+  EXPECT_FALSE(std::filesystem::exists(json_file));
   expect_one_line_error(evaluate({poses, poses, "--plot", folder_.path()}), ExitCode::kInputOutputFailed,
                         folder_.path());
   expect_one_line_error(evaluate({poses, poses, "--plot", poses}), ExitCode::kWrongUsage, "is an input too");

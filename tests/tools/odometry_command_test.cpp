@@ -95,13 +95,13 @@ TEST_F(OdometryCommand, WithoutAnyPoseTheAnswerIsNo) {
 }
 
 TEST_F(OdometryCommand, JsonTellsOfEveryScan) {
-  const nlohmann::json json = json_of({"odometry", drive(3), "-o", path("odometry.txt")});
-  EXPECT_EQ(json["registered"], 3);
-  ASSERT_EQ(json["results"].size(), 3U);
-  EXPECT_FALSE(json["results"][0].contains("covariance"));
-  EXPECT_EQ(json["results"][1]["covariance"].size(), 6U);
-  EXPECT_NEAR(json["results"][2]["previous_from_scan"][0][3], 0.2, 0.02);
-  EXPECT_EQ(json["results"][2]["refound"], false);
+  const nlohmann::json report = json_of({"odometry", drive(3), "-o", path("odometry.txt")});
+  EXPECT_EQ(report["registered"], 3);
+  ASSERT_EQ(report["results"].size(), 3U);
+  EXPECT_FALSE(report["results"][0].contains("covariance"));
+  EXPECT_EQ(report["results"][1]["covariance"].size(), 6U);
+  EXPECT_NEAR(report["results"][2]["previous_from_scan"][0][3], 0.2, 0.02);
+  EXPECT_EQ(report["results"][2]["refound"], false);
 }
 
 TEST_F(OdometryCommand, AnyNumberOfThreadsGivesTheSameBytes) {

@@ -1,47 +1,24 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "vdbmap/io/atomic_file.h"
 
-#include <array>
-#include <atomic>
 #include <cerrno>
 #include <cstdlib>
-#include <cstring>
 
 #include <fcntl.h>
 #include <sys/stat.h>
 #include <unistd.h>
 
 #include "vdbmap/core/error.h"
+#include "vdbmap/io/unfinished_paths.h"
 
 namespace vdbmap {
 namespace {
 
 constexpr std::size_t kBufferSize = 1 << 20;  // [bytes]
 
-// Paths that a signal handler may remove: plain memory, claimed and released with atomics only.
-struct UnfinishedFile {
-  std::atomic<int> state{0};  // 0 free, 1 being filled, 2 to be removed
-  std::array<char, 4096> path{};
-};
-std::array<UnfinishedFile, 16> unfinished_files;
+UnfinishedPaths<16> unfinished_files;
 
-void remember_unfinished(const std::string& path) {
-  for (UnfinishedFile& file : unfinished_files) {
-    int expected = 0;
-    if (path.size() >= file.path.size() || !file.state.compare_exchange_strong(expected, 1)) continue;
-    std::memcpy(file.path.data(), path.c_str(), path.size() + 1);
-    file.state.store(2);
-    return;
-  }
-}
-
-void forget_unfinished(const std::string& path) {
-  for (UnfinishedFile& file : unfinished_files) {
-    if (file.state.load() == 2 && path == file.path.data()) file.state.store(0);
-  }
-}
-
-int create_beside(const std::filesystem::path& target, std::filesystem::path& temporary) {
+int create_file_beside(const std::filesystem::path& target, std::filesystem::path& temporary) {
   std::string name = target.string() + ".XXXXXX";
   const int descriptor = ::mkostemp(name.data(), O_CLOEXEC);
   if (descriptor < 0) throw IoError::system(target, "cannot create", errno);
@@ -61,15 +38,15 @@ AtomicFile::AtomicFile(std::filesystem::path target) : target_(std::move(target)
   if (std::filesystem::exists(target_) && !std::filesystem::is_regular_file(target_)) {
     throw IoError::system(target_, "cannot replace what is no regular file", EINVAL);
   }
-  descriptor_ = create_beside(target_, temporary_);
-  remember_unfinished(temporary_.string());
+  descriptor_ = create_file_beside(target_, temporary_);
+  unfinished_files.remember(temporary_.string());
 }
 
 AtomicFile::~AtomicFile() {
   if (descriptor_ < 0) return;
   ::close(descriptor_);
   ::unlink(temporary_.c_str());
-  forget_unfinished(temporary_.string());
+  unfinished_files.forget(temporary_.string());
 }
 
 void AtomicFile::write(std::string_view bytes) {
@@ -94,7 +71,7 @@ void AtomicFile::commit() {
   if (::rename(temporary_.c_str(), target_.c_str()) != 0) throw IoError::system(target_, "cannot replace", errno);
   ::close(descriptor_);
   descriptor_ = -1;
-  forget_unfinished(temporary_.string());
+  unfinished_files.forget(temporary_.string());
 }
 
 void write_file(const std::filesystem::path& target, std::string_view bytes) {
@@ -106,9 +83,7 @@ void write_file(const std::filesystem::path& target, std::string_view bytes) {
 void check_writable(const std::filesystem::path& target) { AtomicFile probe(target); }
 
 void remove_unfinished_files() noexcept {
-  for (UnfinishedFile& file : unfinished_files) {
-    if (file.state.load() == 2) ::unlink(file.path.data());
-  }
+  unfinished_files.for_each([](const char* path) { ::unlink(path); });
 }
 
 }  // namespace vdbmap

@@ -2,7 +2,6 @@
 #include "vdbmap/io/atomic_folder.h"
 
 #include <array>
-#include <atomic>
 #include <cerrno>
 #include <cstdint>
 #include <cstdio>
@@ -16,34 +15,14 @@
 #include <unistd.h>
 
 #include "vdbmap/core/error.h"
+#include "vdbmap/io/unfinished_paths.h"
 
 namespace vdbmap {
 namespace {
 
 constexpr int kDeepest = 8;  // folders within folders
 
-// Paths that a signal handler may remove: plain memory, claimed and released with atomics only.
-struct UnfinishedFolder {
-  std::atomic<int> state{0};  // 0 free, 1 being filled in, 2 to be removed
-  std::array<char, 4096> path{};
-};
-std::array<UnfinishedFolder, 4> unfinished_folders;
-
-void remember_unfinished(const std::string& path) {
-  for (UnfinishedFolder& folder : unfinished_folders) {
-    int expected = 0;
-    if (path.size() >= folder.path.size() || !folder.state.compare_exchange_strong(expected, 1)) continue;
-    std::memcpy(folder.path.data(), path.c_str(), path.size() + 1);
-    folder.state.store(2);
-    return;
-  }
-}
-
-void forget_unfinished(const std::string& path) {
-  for (UnfinishedFolder& folder : unfinished_folders) {
-    if (folder.state.load() == 2 && path == folder.path.data()) folder.state.store(0);
-  }
-}
+UnfinishedPaths<4> unfinished_folders;
 
 // As the kernel lays it out; opendir() would allocate, which a signal handler must not.
 struct DirectoryEntry {
@@ -89,7 +68,7 @@ void remove_folder(const char* path) noexcept {
   }
 }
 
-std::filesystem::path create_beside(const std::filesystem::path& target) {
+std::filesystem::path create_folder_beside(const std::filesystem::path& target) {
   std::string name = target.string() + ".XXXXXX";
   if (::mkdtemp(name.data()) == nullptr) throw IoError::system(target, "cannot create", errno);
   const mode_t mask = ::umask(0);  // mkdtemp gives 0700; a finished folder follows the user's umask
@@ -120,14 +99,14 @@ AtomicFolder::AtomicFolder(const std::filesystem::path& target) : target_(withou
   if (std::filesystem::exists(target_) && !std::filesystem::is_directory(target_)) {
     throw IoError::system(target, "cannot create the folder", ENOTDIR);
   }
-  temporary_ = create_beside(target_);
-  remember_unfinished(temporary_.string());
+  temporary_ = create_folder_beside(target_);
+  unfinished_folders.remember(temporary_.string());
 }
 
 AtomicFolder::~AtomicFolder() {
   if (temporary_.empty()) return;
   remove_folder(temporary_.c_str());
-  forget_unfinished(temporary_.string());
+  unfinished_folders.forget(temporary_.string());
 }
 
 void AtomicFolder::commit() {
@@ -135,14 +114,10 @@ void AtomicFolder::commit() {
   const bool is_done = is_new ? ::rename(temporary_.c_str(), target_.c_str()) == 0 : exchange(temporary_, target_);
   if (!is_done) throw IoError::system(target_, "cannot replace", errno);
   if (!is_new) remove_folder(temporary_.c_str());
-  forget_unfinished(temporary_.string());
+  unfinished_folders.forget(temporary_.string());
   temporary_.clear();
 }
 
-void remove_unfinished_folders() noexcept {
-  for (UnfinishedFolder& folder : unfinished_folders) {
-    if (folder.state.load() == 2) remove_folder(folder.path.data());
-  }
-}
+void remove_unfinished_folders() noexcept { unfinished_folders.for_each(remove_folder); }
 
 }  // namespace vdbmap

@@ -7,6 +7,7 @@
 
 #include "tests/support/pose_distance.h"
 #include "tests/support/random_points.h"
+#include "tests/support/sample_maps.h"
 #include "tests/support/sanitizers.h"
 #include "tests/support/synthetic_scene.h"
 #include "tests/support/threads.h"
@@ -15,15 +16,8 @@
 namespace vdbmap::registration {
 namespace {
 
-VoxelLevel level_of(const PointCloud& cloud) {
-  BuildOptions options;
-  options.voxel_sizes = {1.0};
-  options.anchor = Eigen::Vector3d::Zero();
-  return std::move(build_map(cloud, options).levels.front());
-}
-
 const VoxelLevel& street_level() {
-  static const VoxelLevel level = level_of(test::sample_scene(test::village(), 60, 1));
+  static const VoxelLevel level = test::coarse_level(test::sample_scene(test::village(), 60, 1));
   return level;
 }
 
@@ -34,7 +28,7 @@ TEST_P(CoarseSeed, FindsAVillageTurnedAnyWay) {
   std::mt19937 random(GetParam());
   const Eigen::Isometry3d moved_from_street = test::random_motion(90, 25.0 * GetParam(), random);
   const VoxelLevel combined =
-      level_of(test::moved(test::sample_scene(test::village(), 40, 100 + GetParam()), moved_from_street));
+      test::coarse_level(test::moved(test::sample_scene(test::village(), 40, 100 + GetParam()), moved_from_street));
   const auto hypotheses = find_coarse(combined, prepare_coarse_map(street_level()));
   ASSERT_FALSE(hypotheses.empty());
   const auto error = test::distance_between(hypotheses.front().target_from_source, moved_from_street.inverse());
@@ -48,13 +42,13 @@ INSTANTIATE_TEST_SUITE_P(Seeds, CoarseSeed, testing::Range(1U, test::kIsSanitize
 TEST(Coarse, AnEmptyScanOrMapHasNoHypothesis) {
   PointCloud one;
   one.positions = {{0.5, 0.5, 0.5}};
-  EXPECT_TRUE(find_coarse(level_of(one), prepare_coarse_map(street_level())).empty());
-  EXPECT_TRUE(find_coarse(street_level(), prepare_coarse_map(level_of(one))).empty());
-  EXPECT_TRUE(find_coarse(level_of({}), prepare_coarse_map(street_level())).empty());
+  EXPECT_TRUE(find_coarse(test::coarse_level(one), prepare_coarse_map(street_level())).empty());
+  EXPECT_TRUE(find_coarse(street_level(), prepare_coarse_map(test::coarse_level(one))).empty());
+  EXPECT_TRUE(find_coarse(test::coarse_level({}), prepare_coarse_map(street_level())).empty());
 }
 
 TEST(Coarse, DoesNotDependOnTheNumberOfThreads) {
-  const VoxelLevel combined = level_of(test::sample_scene(test::village(), 40, 5));
+  const VoxelLevel combined = test::coarse_level(test::sample_scene(test::village(), 40, 5));
   const auto find = [&] { return find_coarse(combined, prepare_coarse_map(street_level())); };
   const auto one = test::on_threads(1, find);
   const auto four = test::on_threads(4, find);

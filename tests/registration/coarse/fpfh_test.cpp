@@ -9,19 +9,13 @@
 #include <gtest/gtest.h>
 
 #include "tests/support/random_points.h"
+#include "tests/support/sample_maps.h"
 #include "tests/support/synthetic_scene.h"
 #include "tests/support/threads.h"
 #include "vdbmap/core/map_builder.h"
 
 namespace vdbmap::registration {
 namespace {
-
-VoxelLevel level_of(const PointCloud& cloud) {
-  BuildOptions options;
-  options.voxel_sizes = {1.0};
-  options.anchor = Eigen::Vector3d::Zero();
-  return std::move(build_map(cloud, options).levels.front());
-}
 
 TEST(PairAngles, OfTwoPointsOfOnePlaneAreZero) {
   const PairAngles angles = pair_angles({0, 0, 0}, {0, 0, 1}, {3, 4, 0}, {0, 0, 1});
@@ -106,7 +100,7 @@ Histogram brute_force_feature(const SurfacePoints& points, std::size_t i, double
 }
 
 TEST(Fpfh, AgreesWithBruteForce) {
-  const VoxelLevel level = level_of(test::sample_scene(test::room(), 40, 3));
+  const VoxelLevel level = test::coarse_level(test::sample_scene(test::room(), 40, 3));
   const SurfacePoints points = surface_points(level, 5);
   const FpfhMatrix features = fpfh_features(level, points, 3.5);
   ASSERT_EQ(features.cols(), static_cast<Eigen::Index>(level.size()));
@@ -122,12 +116,12 @@ TEST(Fpfh, AgreesWithBruteForce) {
 TEST(Fpfh, OfALonelyVoxelIsZero) {
   PointCloud cloud;
   cloud.positions = {{0.5, 0.5, 0.5}, {50.5, 0.5, 0.5}};
-  const VoxelLevel level = level_of(cloud);
+  const VoxelLevel level = test::coarse_level(cloud);
   EXPECT_TRUE(fpfh_features(level, surface_points(level, 5), 5).isZero());
 }
 
 TEST(Fpfh, DoesNotDependOnTheNumberOfThreads) {
-  const VoxelLevel level = level_of(test::sample_scene(test::street(), 20, 3));
+  const VoxelLevel level = test::coarse_level(test::sample_scene(test::street(), 20, 3));
   const auto features = [&] { return fpfh_features(level, surface_points(level, 7), 5); };
   EXPECT_EQ(test::on_threads(1, features), test::on_threads(4, features));
 }

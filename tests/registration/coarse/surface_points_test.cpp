@@ -3,18 +3,12 @@
 
 #include <gtest/gtest.h>
 
+#include "tests/support/sample_maps.h"
 #include "tests/support/synthetic_scene.h"
 #include "vdbmap/core/map_builder.h"
 
 namespace vdbmap::registration {
 namespace {
-
-VoxelLevel level_of(const PointCloud& cloud) {
-  BuildOptions options;
-  options.voxel_sizes = {1.0};
-  options.anchor = Eigen::Vector3d::Zero();
-  return std::move(build_map(cloud, options).levels.front());
-}
 
 // Share of the flat points whose normal points to where `inside` is, as seen from them.
 double share_facing(const SurfacePoints& points, const Eigen::Vector3d& inside) {
@@ -35,14 +29,14 @@ TEST(SurfacePoints, FaceTheInsideOfARoomWhateverWayItIsTurned) {
   Eigen::Isometry3d turned = Eigen::Isometry3d::Identity();
   for (const double angle : {0.0, 1.0, 2.0, 3.0}) {
     turned.linear() = Eigen::AngleAxisd(angle, Eigen::Vector3d(1, 2, 3).normalized()).toRotationMatrix();
-    EXPECT_EQ(share_facing(surface_points(level_of(test::moved(walls, turned)), 7), turned * middle), 1.0);
+    EXPECT_EQ(share_facing(surface_points(test::coarse_level(test::moved(walls, turned)), 7), turned * middle), 1.0);
   }
 }
 
 TEST(SurfacePoints, HaveOneEntryAVoxelAtItsMean) {
   PointCloud cloud;
   cloud.positions = {{0.2, 0.2, 0.2}, {0.4, 0.2, 0.2}, {7.5, 0.5, 0.5}};
-  const SurfacePoints points = surface_points(level_of(cloud), 5);
+  const SurfacePoints points = surface_points(test::coarse_level(cloud), 5);
   ASSERT_EQ(points.size(), 2u);
   EXPECT_NEAR((points.positions[0] - Eigen::Vector3d(0.3, 0.2, 0.2)).norm(), 0, 1e-4);
   EXPECT_NEAR(points.normals[1].norm(), 1, 1e-9);

@@ -56,7 +56,8 @@ Vector6d error_of(const Eigen::Isometry3d& estimate, const Eigen::Isometry3d& tr
 class HonestCovariance : public testing::TestWithParam<NoisyPlace> {};
 
 TEST_P(HonestCovariance, NormalizedErrorsStayWithinTheir95PercentBounds) {
-  constexpr unsigned kTrials = test::kIsSanitized ? 4 : 24;
+  if (test::kIsSanitized) GTEST_SKIP() << "so few trials as there is time for say nothing about a distribution";
+  constexpr unsigned kTrials = 24;
   const NoisyPlace place = GetParam();
   std::mt19937 random(1234);  // other maps, scans and poses than those the systematic part was estimated from
   double squared_error = 0;

@@ -10,6 +10,7 @@
 
 #include "tests/support/pose_distance.h"
 #include "tests/support/random_points.h"
+#include "tests/support/sample_maps.h"
 #include "tests/support/sanitizers.h"
 #include "tests/support/synthetic_scene.h"
 #include "tests/support/threads.h"
@@ -17,8 +18,6 @@
 
 namespace vdbmap::registration {
 namespace {
-
-const Eigen::Vector3d kUtm(548'864, 5'804'032, 0);  // [m]
 
 VoxelMap map_of(const test::Scene& scene, const Eigen::Vector3d& origin = Eigen::Vector3d::Zero(),
                 const std::vector<double>& voxel_sizes = {0.1, 1}) {
@@ -108,10 +107,10 @@ TEST(PointToPlane, FindsAScanInAMapAtUtmCoordinates) {
   const Eigen::Isometry3d pose = pose_in_street(random);
   const PointCloud scan = test::scan_scene(test::street(), pose);
   const Eigen::Isometry3d guess = level_guess(pose, 1, 5, random);
-  const VoxelMap map = map_of(test::street(), kUtm);
-  ASSERT_EQ(map.frame.anchor, kUtm);
+  const VoxelMap map = map_of(test::street(), test::kUtm);
+  ASSERT_EQ(map.frame.anchor, test::kUtm);
 
-  const Eigen::Isometry3d utm_from_local(Eigen::Translation3d{kUtm});
+  const Eigen::Isometry3d utm_from_local(Eigen::Translation3d{test::kUtm});
   const FineResult at_utm = align_scan(scan, map, utm_from_local * guess);
   expect_at(at_utm, utm_from_local * pose);
   // The same as without the anchor but for points that rounding at UTM values (1e-9 m) put one quantum aside, which

@@ -12,7 +12,7 @@
 namespace vdbmap::registration {
 namespace {
 
-const Eigen::AlignedBox3d kBox(Eigen::Vector3d(-50, -50, -3), Eigen::Vector3d(50, 50, 9));
+const Eigen::AlignedBox3d kSurroundings(Eigen::Vector3d(-50, -50, -3), Eigen::Vector3d(50, 50, 9));
 constexpr double kEpoch = 1.7e9;  // [s] times as GPS and Unix clocks give them
 
 ScanMotion motion(const Eigen::Vector3d& turn, const Eigen::Vector3d& velocity) {
@@ -22,7 +22,7 @@ ScanMotion motion(const Eigen::Vector3d& turn, const Eigen::Vector3d& velocity) 
 }
 
 TEST(Deskew, MovesEveryPointByTheMotionUntilItsTime) {
-  const std::vector<Eigen::Vector3d> points = test::random_points(3000, kBox, 1);
+  const std::vector<Eigen::Vector3d> points = test::random_points(3000, kSurroundings, 1);
   for (const ScanMotion& sensor : {motion({0.3, -0.2, 1.5}, {15, 1, -0.5}), motion({0, 0, 0}, {15, 1, -0.5}),
                                    motion({0, 0, 1e-8}, {15, 0, 0}), motion({0, 2, 0}, {0, 0, 0})}) {
     std::vector<double> times;
@@ -53,14 +53,14 @@ TEST(Deskew, OfAMovingScannersScanLiesOnTheScene) {
 
 TEST(Deskew, WithoutTimesOrMotionTheScanStaysAsItIs) {
   PointCloud scan;
-  scan.positions = test::random_points(10, kBox, 1);
+  scan.positions = test::random_points(10, kSurroundings, 1);
   EXPECT_EQ(deskew(scan, motion({0, 0, 1}, {1, 0, 0})).positions, scan.positions);
   scan.times.assign(10, kEpoch + 0.05);
   EXPECT_EQ(deskew(scan, motion({0, 0, 0}, {0, 0, 0})).positions, scan.positions);
 }
 
 TEST(Deskew, IsTheSameForAnyNumberOfThreads) {
-  const std::vector<Eigen::Vector3d> points = test::random_points(20'000, kBox, 1);
+  const std::vector<Eigen::Vector3d> points = test::random_points(20'000, kSurroundings, 1);
   const std::vector<double> times(points.size(), kEpoch + 0.07);
   const ScanMotion sensor = motion({0.3, -0.2, 1.5}, {15, 1, -0.5});
   const auto deskewed = [&] { return deskew_points(points, times, sensor); };

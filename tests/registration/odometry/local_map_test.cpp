@@ -14,7 +14,7 @@
 namespace vdbmap::registration {
 namespace {
 
-const Eigen::AlignedBox3d kBox(Eigen::Vector3d(-6, -5, -3), Eigen::Vector3d(5, 6, 4));
+const Eigen::AlignedBox3d kRoom(Eigen::Vector3d(-6, -5, -3), Eigen::Vector3d(5, 6, 4));
 
 LocalMap map_of(const std::vector<Eigen::Vector3d>& points, const LocalMapOptions& options = {}) {
   LocalMap map(options);
@@ -43,10 +43,10 @@ TEST(LocalMap, FindsTheNeighborThatBruteForceFinds) {
   for (const double voxel_size : {0.5, 1.0, 2.3}) {
     LocalMapOptions options;
     options.voxel_size = voxel_size;
-    const LocalMap map = map_of(test::random_points(4000, kBox, 1), options);
+    const LocalMap map = map_of(test::random_points(4000, kRoom, 1), options);
     const std::vector<Eigen::Vector3d> points = map.points();
     for (const double max_distance : {0.2, 0.6, 6.0}) {
-      for (const Eigen::Vector3d& query : test::random_points(500, kBox, 2)) {
+      for (const Eigen::Vector3d& query : test::random_points(500, kRoom, 2)) {
         const auto found = map.nearest(query, max_distance);
         const auto expected = nearest_by_brute_force(points, query, voxel_size, max_distance);
         ASSERT_EQ(found.has_value(), expected.has_value());
@@ -61,7 +61,7 @@ TEST(LocalMap, FindsTheNeighborThatBruteForceFinds) {
 
 TEST(LocalMap, KeepsPointsToMicrometresFarFromTheOrigin) {
   const Eigen::Vector3d far(900'000.3, -700'000.7, 41.2);
-  std::vector<Eigen::Vector3d> points = test::random_points(500, kBox, 1);
+  std::vector<Eigen::Vector3d> points = test::random_points(500, kRoom, 1);
   for (Eigen::Vector3d& point : points) point += far;
   LocalMapOptions options;
   options.points_per_voxel = 24;
@@ -76,7 +76,7 @@ TEST(LocalMap, KeepsPointsToMicrometresFarFromTheOrigin) {
 TEST(LocalMap, HoldsABoundedNumberOfPointsInEachVoxelApartFromEachOther) {
   LocalMapOptions options;
   options.points_per_voxel = 5;
-  const LocalMap map = map_of(test::random_points(50'000, kBox, 1), options);
+  const LocalMap map = map_of(test::random_points(50'000, kRoom, 1), options);
   const double spacing = 1 / std::sqrt(5.0);  // voxel size / sqrt(points a voxel)
   const std::vector<Eigen::Vector3d> points = map.points();
   for (const auto& [voxel, numbers] : test::points_by_voxel(points, 1)) {
@@ -104,7 +104,7 @@ TEST(LocalMap, ThePointsThatComeFirstStay) {
 TEST(LocalMap, ForgetsExactlyTheVoxelsOutOfReach) {
   LocalMapOptions options;
   options.max_distance = 4;
-  LocalMap map = map_of(test::random_points(4000, kBox, 1), options);
+  LocalMap map = map_of(test::random_points(4000, kRoom, 1), options);
   const std::vector<Eigen::Vector3d> before = map.points();
   const Eigen::Vector3d sensor(1.5, 2, 0);
   map.forget_far(sensor);
@@ -128,7 +128,7 @@ TEST(LocalMap, GrowsNoFurtherWhileTheSensorMoves) {
   LocalMap map(options);
   for (int i = 0; i < 100; ++i) {
     const Eigen::Vector3d sensor(i, 0, 0);
-    std::vector<Eigen::Vector3d> points = test::random_points(2000, kBox, static_cast<unsigned>(i));
+    std::vector<Eigen::Vector3d> points = test::random_points(2000, kRoom, static_cast<unsigned>(i));
     for (Eigen::Vector3d& point : points) point += sensor;
     map.insert(points);
     map.forget_far(sensor);

@@ -19,7 +19,7 @@ Triangle3 corners(const Mesh& mesh, const Triangle& t) {
   return {mesh.vertices[t.a].cast<double>(), mesh.vertices[t.b].cast<double>(), mesh.vertices[t.c].cast<double>()};
 }
 
-double area(const Mesh& mesh) {
+double area_of(const Mesh& mesh) {
   double sum = 0;
   for (const Triangle& triangle : mesh.triangles) {
     const Triangle3 t = corners(mesh, triangle);
@@ -38,7 +38,7 @@ TEST(Mesh, BoxHasSixFacesOfTheRightArea) {
   Mesh mesh;
   add_box({&mesh}, {-1, 0, 2}, {1, 3, 6});
   EXPECT_EQ(mesh.triangles.size(), 12U);
-  EXPECT_NEAR(area(mesh), 2 * (2 * 3 + 3 * 4 + 2 * 4), 1e-5);
+  EXPECT_NEAR(area_of(mesh), 2 * (2 * 3 + 3 * 4 + 2 * 4), 1e-5);
   EXPECT_EQ(bounds(mesh).min(), Eigen::Vector3f(-1, 0, 2));
   EXPECT_EQ(bounds(mesh).max(), Eigen::Vector3f(1, 3, 6));
 }
@@ -49,7 +49,7 @@ TEST(Mesh, TubeIsAnInscribedPrism) {
   add_tube({&mesh}, {{0, 0, 0}, {0, 0, 2}, 0.5, 0.5, 12, true});
   const double chord = 2 * 0.5 * std::sin(pi / 12);
   const double cap = 12 * 0.5 * 0.5 * std::sin(2 * pi / 12) / 2;
-  EXPECT_NEAR(area(mesh), 12 * chord * 2 + 2 * cap, 1e-5);
+  EXPECT_NEAR(area_of(mesh), 12 * chord * 2 + 2 * cap, 1e-5);
 }
 
 TEST(Mesh, EllipsoidLiesOnItsEquation) {
@@ -76,7 +76,7 @@ TEST(Mesh, AppendKeepsTheTrianglesOfBoth) {
   add_box({&a}, {0, 0, 0}, {1, 1, 1});
   add_box({&b}, {5, 5, 5}, {6, 6, 6});
   a.append(b);
-  EXPECT_NEAR(area(a), 12, 1e-5);
+  EXPECT_NEAR(area_of(a), 12, 1e-5);
   EXPECT_EQ(bounds(a).max(), Eigen::Vector3f(6, 6, 6));
 }
 

@@ -16,7 +16,7 @@ namespace vdbmap {
 namespace {
 
 // Across leaves and blocks, on both sides of every axis.
-const Eigen::AlignedBox3d kBox(Eigen::Vector3d(-13.1, -2.2, -1.1), Eigen::Vector3d(3.3, 2.4, 1.2));
+const Eigen::AlignedBox3d kTwoBlocks(Eigen::Vector3d(-13.1, -2.2, -1.1), Eigen::Vector3d(3.3, 2.4, 1.2));
 
 VoxelMap map_of(const PointCloud& cloud, const std::vector<double>& voxel_sizes) {
   BuildOptions options;
@@ -59,13 +59,13 @@ class HierarchyStep : public testing::TestWithParam<Step> {};
 
 TEST_P(HierarchyStep, ALevelHasTheMomentsOfItsPoints) {
   const auto [fine_size, coarse_size] = GetParam();
-  const PointCloud cloud = test::random_cloud(30'000, kBox, 1);
+  const PointCloud cloud = test::random_cloud(30'000, kTwoBlocks, 1);
   expect_moments_of_points(map_of(cloud, {fine_size, coarse_size}).coarsest(), cloud, fine_size);
 }
 
 TEST_P(HierarchyStep, ALevelIsTheOneBuiltFromThePointsDirectly) {
   const auto [fine_size, coarse_size] = GetParam();
-  const PointCloud cloud = test::random_cloud(30'000, kBox, 2);
+  const PointCloud cloud = test::random_cloud(30'000, kTwoBlocks, 2);
   const VoxelMap two_levels = map_of(cloud, {fine_size, coarse_size});
   const VoxelMap one_level = map_of(cloud, {coarse_size});
   const VoxelLevel& merged = two_levels.coarsest();
@@ -83,7 +83,7 @@ TEST_P(HierarchyStep, ALevelIsTheOneBuiltFromThePointsDirectly) {
 
 TEST_P(HierarchyStep, CountsAddUp) {
   const auto [fine_size, coarse_size] = GetParam();
-  const VoxelMap map = map_of(test::random_cloud(30'000, kBox, 3), {fine_size, coarse_size});
+  const VoxelMap map = map_of(test::random_cloud(30'000, kTwoBlocks, 3), {fine_size, coarse_size});
   EXPECT_EQ(num_points(map.finest()), 30'000U);
   EXPECT_EQ(num_points(map.coarsest()), 30'000U);
 }
@@ -93,7 +93,7 @@ INSTANTIATE_TEST_SUITE_P(Factors, HierarchyStep,
                          testing::Values(Step{0.1, 0.2}, Step{64.0 / 600, 0.32}, Step{0.1, 1.0}, Step{0.5, 64.0}));
 
 TEST(Hierarchy, ThreeLevelsAreEachAMergeOfThePoints) {
-  const PointCloud cloud = test::random_cloud(30'000, kBox, 4);
+  const PointCloud cloud = test::random_cloud(30'000, kTwoBlocks, 4);
   const VoxelMap map = map_of(cloud, {0.1, 0.2, 1});
   ASSERT_EQ(map.levels.size(), 3U);
   EXPECT_DOUBLE_EQ(map.levels[1].voxel_size(), 0.2);
@@ -131,7 +131,7 @@ TEST(Hierarchy, EpochsOfAParentSpanThoseOfItsChildren) {
 
 TEST(Hierarchy, DoesNotDependOnTheNumberOfThreads) {
   // Over a thousand leaves, so that parents are gathered by several tasks.
-  const VoxelMap map = map_of(test::random_cloud(60'000, kBox, 7), {0.05});
+  const VoxelMap map = map_of(test::random_cloud(60'000, kTwoBlocks, 7), {0.05});
   ASSERT_GT(map.finest().leaves().size(), 1000U);
   const auto coarse_map = [&] {
     VoxelMap coarse;

@@ -19,18 +19,12 @@
 namespace vdbmap {
 namespace {
 
-const Eigen::AlignedBox3d kBox(Eigen::Vector3d(-14, -3, -0.7), Eigen::Vector3d(13, 3, 0.8));  // across blocks of 12.8 m
-const Eigen::Vector3d kUtm(548'864, 5'804'032, 0);                                            // [m] multiples of 1024
+const Eigen::AlignedBox3d kBlocks(Eigen::Vector3d(-14, -3, -0.7),
+                                  Eigen::Vector3d(13, 3, 0.8));  // across blocks of 12.8 m
 
 constexpr double kSize = 0.1;                         // [m]
 constexpr double kQuantum = kSize / kQuantaPerVoxel;  // [m] each point is off by half of it at most
 constexpr double kStep = kSize / kMeanSteps;          // [m] and the stored mean by half of it
-
-BuildOptions anchored(const Eigen::Vector3d& anchor) {
-  BuildOptions options;
-  options.anchor = anchor;
-  return options;
-}
 
 PointCloud cloud_of(std::vector<Eigen::Vector3d> positions) {
   PointCloud cloud;
@@ -39,11 +33,11 @@ PointCloud cloud_of(std::vector<Eigen::Vector3d> positions) {
 }
 
 VoxelMap map_of(std::vector<Eigen::Vector3d> positions) {
-  return build_map(cloud_of(std::move(positions)), anchored({0, 0, 0}));
+  return build_map(cloud_of(std::move(positions)), test::anchored({0, 0, 0}));
 }
 
 PointCloud at_utm(PointCloud cloud) {
-  for (Eigen::Vector3d& point : cloud.positions) point += kUtm;
+  for (Eigen::Vector3d& point : cloud.positions) point += test::kUtm;
   return cloud;
 }
 
@@ -90,24 +84,24 @@ void expect_brute_force(const VoxelMap& map, const PointCloud& cloud) {
 TEST(MapBuilder, EveryVoxelHoldsTheMomentsAndColorOfItsPoints) {
   const PointCloud dense =
       test::random_cloud(40'000, {Eigen::Vector3d(-0.95, -1.05, -0.5), Eigen::Vector3d(1, 1, 0.5)}, 1);
-  expect_brute_force(build_map(dense, anchored({0, 0, 0})), dense);
-  const PointCloud sparse = test::random_cloud(40'000, kBox, 2);
-  expect_brute_force(build_map(sparse, anchored({0, 0, 0})), sparse);
+  expect_brute_force(build_map(dense, test::anchored({0, 0, 0})), dense);
+  const PointCloud sparse = test::random_cloud(40'000, kBlocks, 2);
+  expect_brute_force(build_map(sparse, test::anchored({0, 0, 0})), sparse);
 }
 
 TEST(MapBuilder, UtmCoordinatesLoseNothing) {
   const PointCloud cloud =
       at_utm(test::random_cloud(20'000, {Eigen::Vector3d(-2, -1, -0.5), Eigen::Vector3d(2, 1, 0.5)}, 3));
   const VoxelMap map = build_map(cloud);
-  EXPECT_EQ(map.frame.anchor, kUtm);
+  EXPECT_EQ(map.frame.anchor, test::kUtm);
   expect_brute_force(map, cloud);
 }
 
 TEST(MapBuilder, ScansAreMovedByTheirPose) {
-  const PointCloud scan = test::random_cloud(20'000, kBox, 4);
+  const PointCloud scan = test::random_cloud(20'000, kBlocks, 4);
   std::mt19937 random(4);
   Eigen::Isometry3d map_from_scan = test::random_motion(30, 123, random);
-  map_from_scan.pretranslate(kUtm);
+  map_from_scan.pretranslate(test::kUtm);
   MapBuilder builder{BuildOptions()};
   builder.add(scan, map_from_scan);
   EXPECT_EQ(builder.num_points(), scan.size());
@@ -119,15 +113,15 @@ TEST(MapBuilder, ScansAreMovedByTheirPose) {
 }
 
 TEST(MapBuilder, TheOrderOfThePointsDoesNotMatter) {
-  const PointCloud cloud = test::random_cloud(40'000, kBox, 5);
-  const VoxelMap map = build_map(cloud, anchored({0, 0, 0}));
-  EXPECT_EQ(test::difference(build_map(test::shuffled(cloud, 6), anchored({0, 0, 0})), map), "");
+  const PointCloud cloud = test::random_cloud(40'000, kBlocks, 5);
+  const VoxelMap map = build_map(cloud, test::anchored({0, 0, 0}));
+  EXPECT_EQ(test::difference(build_map(test::shuffled(cloud, 6), test::anchored({0, 0, 0})), map), "");
 }
 
 TEST(MapBuilder, TheCutIntoCallsDoesNotMatter) {
-  const PointCloud cloud = test::random_cloud(40'000, kBox, 7);
-  const VoxelMap map = build_map(cloud, anchored({0, 0, 0}));
-  MapBuilder builder(anchored({0, 0, 0}));
+  const PointCloud cloud = test::random_cloud(40'000, kBlocks, 7);
+  const VoxelMap map = build_map(cloud, test::anchored({0, 0, 0}));
+  MapBuilder builder(test::anchored({0, 0, 0}));
   std::size_t begin = 0;
   for (const std::size_t end : {0UL, 1UL, 3UL, 17'000UL, 17'001UL, 40'000UL}) {
     builder.add(test::part_of(cloud, begin, end));
@@ -140,7 +134,7 @@ TEST(MapBuilder, TheCutIntoCallsDoesNotMatter) {
 class MapBuilderThreads : public testing::TestWithParam<int> {};
 
 TEST_P(MapBuilderThreads, TheNumberOfThreadsDoesNotMatter) {
-  const PointCloud cloud = at_utm(test::random_cloud(100'000, kBox, 8));
+  const PointCloud cloud = at_utm(test::random_cloud(100'000, kBlocks, 8));
   BuildOptions options;
   options.epoch = 3;
   options.voxel_sizes = {0.1, 0.2, 1};
@@ -168,7 +162,7 @@ TEST(MapBuilder, DecimalUtmCoordinatesOnABorderBelongToTheUpperVoxel) {
   // Times ten they are whole again, to the last bit (Goldberg 1991, theorem 7).
   std::vector<Eigen::Vector3d> corners;
   for (int i = 0; i < 1000; ++i) corners.emplace_back((5'488'640 + i) / 10.0, (58'040'320 + i) / 10.0, 0.05);
-  const VoxelMap map = build_map(cloud_of(corners), anchored(kUtm));
+  const VoxelMap map = build_map(cloud_of(corners), test::anchored(test::kUtm));
   const VoxelFinder finder(map.finest());
   for (int i = 0; i < 1000; ++i) EXPECT_NE(finder.find({i, i, 0}), nullptr) << i;
 }
@@ -212,8 +206,8 @@ TEST(MapBuilder, NoPointsMakeAnEmptyMap) {
 }
 
 TEST(MapBuilder, IsEmptyAfterFinish) {
-  MapBuilder builder(anchored({0, 0, 0}));
-  builder.add(test::random_cloud(100, kBox, 9));
+  MapBuilder builder(test::anchored({0, 0, 0}));
+  builder.add(test::random_cloud(100, kBlocks, 9));
   builder.finish();
   EXPECT_EQ(builder.num_points(), 0U);
   EXPECT_EQ(builder.finish().finest().size(), 0U);
@@ -222,16 +216,16 @@ TEST(MapBuilder, IsEmptyAfterFinish) {
 TEST(MapBuilder, ChoosesTheAnchorNearTheFirstPointOfTheFirstScan) {
   MapBuilder builder{BuildOptions()};
   builder.add(PointCloud());  // says nothing
-  const Eigen::Isometry3d map_from_scan(Eigen::Translation3d(kUtm + Eigen::Vector3d(500, -500, 100)));
+  const Eigen::Isometry3d map_from_scan(Eigen::Translation3d(test::kUtm + Eigen::Vector3d(500, -500, 100)));
   builder.add(cloud_of({{1, 1, 1}, {-1, 2, 3}}), map_from_scan);
   builder.add(cloud_of({{4000, 0, 0}}), map_from_scan);
-  EXPECT_EQ(builder.finish().frame.anchor, kUtm);
+  EXPECT_EQ(builder.finish().frame.anchor, test::kUtm);
 }
 
 TEST(MapBuilder, AnchorsMoveVoxelsByWholeTiles) {
-  const PointCloud cloud = test::random_cloud(10'000, kBox, 10);
-  const VoxelMap here = build_map(cloud, anchored({0, 0, 0}));
-  const VoxelMap there = build_map(cloud, anchored({-64, 128, 64}));
+  const PointCloud cloud = test::random_cloud(10'000, kBlocks, 10);
+  const VoxelMap here = build_map(cloud, test::anchored({0, 0, 0}));
+  const VoxelMap there = build_map(cloud, test::anchored({-64, 128, 64}));
   ASSERT_EQ(there.finest().size(), here.finest().size());
   const VoxelFinder finder(there.finest());
   for_each_voxel(here.finest(), [&](const VoxelIndex& voxel, std::size_t number) {
@@ -267,15 +261,15 @@ TEST(MapBuilder, OptionsThatMakeNoMapAreRefused) {
   }
   for (const Eigen::Vector3d& anchor : {Eigen::Vector3d(1, 0, 0), Eigen::Vector3d(64, 32, 0),
                                         Eigen::Vector3d(0, 0, std::nan("")), Eigen::Vector3d(0, 64e9, 0)}) {
-    EXPECT_THROW(MapBuilder{anchored(anchor)}, std::invalid_argument) << anchor.transpose();
+    EXPECT_THROW(MapBuilder{test::anchored(anchor)}, std::invalid_argument) << anchor.transpose();
   }
-  EXPECT_NO_THROW(MapBuilder{anchored({-64, 5'804'032, 128})});
+  EXPECT_NO_THROW(MapBuilder{test::anchored({-64, 5'804'032, 128})});
 }
 
 TEST(MapBuilder, IntensitiesAreAveraged) {
   const PointCloud cloud =
       test::random_cloud(20'000, {Eigen::Vector3d(-0.5, -0.5, -0.5), Eigen::Vector3d(0.5, 0.5, 0.5)}, 11);
-  const VoxelMap map = build_map(cloud, anchored({0, 0, 0}));
+  const VoxelMap map = build_map(cloud, test::anchored({0, 0, 0}));
   const std::vector<float>& intensities = map.finest().channels().intensities;
   ASSERT_EQ(intensities.size(), map.finest().size());
   const test::PointsByVoxel voxels = test::points_by_voxel(cloud.positions, kSize);
@@ -292,7 +286,7 @@ TEST(MapBuilder, PointsWithoutAttributesDoNotCountAmongThoseThatHaveThem) {
   PointCloud known = cloud_of({{0.08, 0.08, 0.08}});
   known.colors = {{65535, 0, 65535}};
   known.intensities = {42};
-  MapBuilder builder(anchored({0, 0, 0}));
+  MapBuilder builder(test::anchored({0, 0, 0}));
   builder.add(plain);
   builder.add(known);
   const VoxelMap map = builder.finish();
@@ -306,7 +300,7 @@ TEST(MapBuilder, IntensitiesThatAreDamageDoNotCount) {
   PointCloud cloud = cloud_of(std::vector<Eigen::Vector3d>(6, Eigen::Vector3d(0.02, 0.02, 0.02)));
   const float infinity = std::numeric_limits<float>::infinity();
   cloud.intensities = {3, std::nanf(""), infinity, -infinity, 1e30f, 5};
-  const VoxelMap map = build_map(cloud, anchored({0, 0, 0}));
+  const VoxelMap map = build_map(cloud, test::anchored({0, 0, 0}));
   EXPECT_EQ(map.finest().records()[0].count, 6U);
   EXPECT_EQ(map.finest().channels().intensities, std::vector<float>{4});
 }
@@ -325,7 +319,7 @@ TEST(MapBuilder, EpochAndReferenceSystemAreKept) {
   BuildOptions options;
   options.epoch = -7;
   options.epsg = 25832;
-  const VoxelMap map = build_map(test::random_cloud(1000, kBox, 12), options);
+  const VoxelMap map = build_map(test::random_cloud(1000, kBlocks, 12), options);
   EXPECT_EQ(map.frame.epsg, 25832);
   EXPECT_TRUE(map.has_color);
   for (const VoxelLevel& level : map.levels) {
@@ -342,7 +336,7 @@ TEST(MapBuilder, CloudsOfSeveralChunksAreCountedWhole) {
   cloud.intensities.assign(chunk, 2);
   cloud.positions.insert(cloud.positions.end(), {{0.02, 0.05, 0.05}, {7.05, 0.05, 0.05}});
   cloud.intensities.insert(cloud.intensities.end(), {3, 9});
-  const VoxelMap map = build_map(cloud, anchored({0, 0, 0}));
+  const VoxelMap map = build_map(cloud, test::anchored({0, 0, 0}));
 
   ASSERT_EQ(map.finest().size(), 2U);
   EXPECT_EQ(map.finest().records()[0].count, chunk + 1);

@@ -10,14 +10,13 @@
 
 #include <gtest/gtest.h>
 
+#include "tests/support/sample_maps.h"
 #include "vdbmap/core/map_builder.h"
 #include "vdbmap/core/parallel.h"
 #include "vdbmap/core/srgb.h"
 
 namespace vdbmap {
 namespace {
-
-const Eigen::Vector3d kUtm(548'864.0, 5'804'032.0, 0.0);  // [m] whole tiles of 64 m in UTM zone 32
 
 enum class Attributes { kNone, kAll };
 
@@ -48,13 +47,7 @@ PointCloud joined(PointCloud a, const PointCloud& b) {
   return a;
 }
 
-BuildOptions anchored(const Eigen::Vector3d& anchor) {
-  BuildOptions options;
-  options.anchor = anchor;
-  return options;
-}
-
-VoxelMap single_point(const Eigen::Vector3d& point, const BuildOptions& options = anchored({0, 0, 0})) {
+VoxelMap single_point(const Eigen::Vector3d& point, const BuildOptions& options = test::anchored({0, 0, 0})) {
   PointCloud cloud;
   cloud.positions = {point};
   return build_map(cloud, options);
@@ -149,24 +142,24 @@ TEST(MergeMaps, TwoPointsInOneVoxelGiveTheirMomentsInClosedForm) {
 TEST(MergeMaps, EqualsBuildingFromAllPoints) {
   const PointCloud a = street({-3, -4, 0}, 20'000, 1, Attributes::kAll);
   const PointCloud b = street({0, 1, 0.05}, 30'000, 2, Attributes::kAll);
-  const BuildOptions options = anchored({0, 0, 0});
+  const BuildOptions options = test::anchored({0, 0, 0});
   expect_close(merge_maps(build_map(a, options), build_map(b, options)), build_map(joined(a, b), options));
 }
 
 TEST(MergeMaps, OtherAnchorsAreShiftedByWholeVoxels) {
-  const PointCloud a = street(kUtm + Eigen::Vector3d(-3, -4, 0), 20'000, 3);
-  const PointCloud b = street(kUtm + Eigen::Vector3d(0, 1, 0.05), 20'000, 4);
-  const BuildOptions near = anchored(kUtm);
-  const BuildOptions far = anchored(kUtm + Eigen::Vector3d(-64, 640, 64));
+  const PointCloud a = street(test::kUtm + Eigen::Vector3d(-3, -4, 0), 20'000, 3);
+  const PointCloud b = street(test::kUtm + Eigen::Vector3d(0, 1, 0.05), 20'000, 4);
+  const BuildOptions near = test::anchored(test::kUtm);
+  const BuildOptions far = test::anchored(test::kUtm + Eigen::Vector3d(-64, 640, 64));
   expect_close(merge_maps(build_map(a, near), build_map(b, far)), build_map(joined(a, b), near));
   expect_close(merge_maps(build_map(a, far), build_map(b, near)), build_map(joined(a, b), far));
 }
 
 TEST(MergeMaps, FineVoxelsDoNotDependOnTheAnchors) {
-  const VoxelMap a = build_map(street({-3, -4, 0}, 5'000, 5), anchored({0, 0, 0}));
+  const VoxelMap a = build_map(street({-3, -4, 0}, 5'000, 5), test::anchored({0, 0, 0}));
   const PointCloud b = street({0, 1, 0.05}, 5'000, 6);
-  const VoxelMap near = merge_maps(a, build_map(b, anchored({0, 0, 0})));
-  const VoxelMap far = merge_maps(a, build_map(b, anchored({-128, 64, 0})));
+  const VoxelMap near = merge_maps(a, build_map(b, test::anchored({0, 0, 0})));
+  const VoxelMap far = merge_maps(a, build_map(b, test::anchored({-128, 64, 0})));
   ASSERT_TRUE(near.finest().tree().hasSameTopology(far.finest().tree()));
   for (std::size_t i = 0; i < near.finest().size(); ++i) {
     EXPECT_EQ(near.finest().records()[i].count, far.finest().records()[i].count);
@@ -176,7 +169,7 @@ TEST(MergeMaps, FineVoxelsDoNotDependOnTheAnchors) {
 }
 
 TEST(MergeMaps, TheOrderDoesNotMatter) {
-  BuildOptions options = anchored({0, 0, 0});
+  BuildOptions options = test::anchored({0, 0, 0});
   options.epoch = 2;
   const VoxelMap a = build_map(street({-3, -4, 0}, 20'000, 7, Attributes::kAll), options);
   options.epoch = 1;
@@ -194,8 +187,8 @@ TEST(MergeMaps, TheOrderDoesNotMatterWhereAMeanLiesBetweenTwoCodes) {
 }
 
 TEST(MergeMaps, VoxelsOfOneMapKeepTheirRecordButForTheNormal) {
-  const VoxelMap a = build_map(street({0, 0, 0}, 5'000, 9, Attributes::kAll), anchored({0, 0, 0}));
-  const VoxelMap b = build_map(street({20, 0, 0}, 5'000, 10, Attributes::kAll), anchored({0, 0, 0}));
+  const VoxelMap a = build_map(street({0, 0, 0}, 5'000, 9, Attributes::kAll), test::anchored({0, 0, 0}));
+  const VoxelMap b = build_map(street({20, 0, 0}, 5'000, 10, Attributes::kAll), test::anchored({0, 0, 0}));
   const VoxelMap merged = merge_maps(a, b);
   ASSERT_EQ(merged.finest().size(), a.finest().size() + b.finest().size());
   const VoxelFinder in_merged(merged.finest());
@@ -212,7 +205,7 @@ TEST(MergeMaps, AnEmptyMapChangesNothing) {
   BuildOptions options;
   options.epoch = 4;
   options.epsg = 25832;
-  const VoxelMap map = build_map(street(kUtm, 5'000, 11, Attributes::kAll), options);
+  const VoxelMap map = build_map(street(test::kUtm, 5'000, 11, Attributes::kAll), options);
   const VoxelMap empty = build_map({}, {});
   expect_identical(merge_maps(map, empty), map);
   expect_identical(merge_maps(empty, map), map);
@@ -228,7 +221,8 @@ TEST(MergeMaps, ColorsAreWeightedByCountInLinearLight) {
   PointCloud three = one;
   three.positions.assign(3, {0.02, 0.02, 0.02});
   three.colors.assign(3, grey);
-  const VoxelMap merged = merge_maps(build_map(one, anchored({0, 0, 0})), build_map(three, anchored({0, 0, 0})));
+  const VoxelMap merged =
+      merge_maps(build_map(one, test::anchored({0, 0, 0})), build_map(three, test::anchored({0, 0, 0})));
   const double linear_grey = linear_from_srgb(32896) / 65535.0;
   const Eigen::Vector3d expected(0.25 + 0.75 * linear_grey, 0.75 * linear_grey, 0.75 * linear_grey);
   EXPECT_TRUE(color_of(merged.finest().records()[0]).isApprox(expected, 0x1p-7));
@@ -239,12 +233,12 @@ TEST(MergeMaps, WhatOneMapDoesNotKnowIsTakenFromTheOther) {
   colored.positions = {{0.05, 0.05, 0.05}};
   colored.colors = {{65535, 0, 65535}};
   colored.intensities = {0.5F};
-  BuildOptions options = anchored({0, 0, 0});
+  BuildOptions options = test::anchored({0, 0, 0});
   options.epoch = 7;
   const VoxelMap known = build_map(colored, options);
   PointCloud plain;
   plain.positions = {{0.05, 0.05, 0.05}, {5.05, 0.05, 0.05}};
-  const VoxelMap merged = merge_maps(build_map(plain, anchored({0, 0, 0})), known);
+  const VoxelMap merged = merge_maps(build_map(plain, test::anchored({0, 0, 0})), known);
 
   EXPECT_TRUE(merged.has_color);
   ASSERT_EQ(merged.finest().size(), 2U);
@@ -256,7 +250,7 @@ TEST(MergeMaps, WhatOneMapDoesNotKnowIsTakenFromTheOther) {
 }
 
 TEST(MergeMaps, EpochsSpanBothMaps) {
-  BuildOptions options = anchored({0, 0, 0});
+  BuildOptions options = test::anchored({0, 0, 0});
   options.epoch = 5;
   const VoxelMap later = single_point({0.05, 0.05, 0.05}, options);
   options.epoch = 2;
@@ -269,15 +263,15 @@ TEST(MergeMaps, EpochsSpanBothMaps) {
 }
 
 TEST(MergeMaps, TheResultDoesNotDependOnTheNumberOfThreads) {
-  const VoxelMap a = build_map(street({-3, -4, 0}, 20'000, 12, Attributes::kAll), anchored({0, 0, 0}));
-  const VoxelMap b = build_map(street({0, 1, 0.05}, 20'000, 13, Attributes::kAll), anchored({64, 0, 0}));
+  const VoxelMap a = build_map(street({-3, -4, 0}, 20'000, 12, Attributes::kAll), test::anchored({0, 0, 0}));
+  const VoxelMap b = build_map(street({0, 1, 0.05}, 20'000, 13, Attributes::kAll), test::anchored({64, 0, 0}));
   const VoxelMap on_many = merge_maps(a, b);
   const ThreadLimit limit(1);
   expect_identical(merge_maps(a, b), on_many);
 }
 
 TEST(MergeMaps, EpsgCodesThatDifferAreRefused) {
-  BuildOptions options = anchored({0, 0, 0});
+  BuildOptions options = test::anchored({0, 0, 0});
   options.epsg = 25832;
   const VoxelMap a = single_point({1, 1, 1}, options);
   options.epsg = 32632;
@@ -289,7 +283,7 @@ TEST(MergeMaps, EpsgCodesThatDifferAreRefused) {
 }
 
 TEST(MergeMaps, LevelsThatDifferAreRefused) {
-  BuildOptions options = anchored({0, 0, 0});
+  BuildOptions options = test::anchored({0, 0, 0});
   const VoxelMap a = single_point({1, 1, 1}, options);
   options.voxel_sizes = {0.1, 0.5};
   const VoxelMap b = single_point({1, 1, 1}, options);
@@ -300,14 +294,14 @@ TEST(MergeMaps, LevelsThatDifferAreRefused) {
 
 TEST(MergeMaps, AVoxelBeyondTheRangeOfIdsIsRefused) {
   const VoxelMap here = single_point({1, 1, 1});
-  const VoxelMap there = single_point(kUtm, anchored(kUtm));
+  const VoxelMap there = single_point(test::kUtm, test::anchored(test::kUtm));
   EXPECT_THROW(merge_maps(here, there), std::out_of_range);
   EXPECT_EQ(message_of([&] { merge_maps(here, there); }),
             "a voxel of the map with anchor 548864 5804032 0 is more than 104857.6 m from the anchor 0 0 0, the "
             "farthest that voxel ids reach");
   const VoxelMap last = single_point({-104'857.55, 1, 1});
   EXPECT_EQ(merge_maps(here, last).finest().size(), 2U);
-  EXPECT_THROW(merge_maps(single_point({65, 1, 1}, anchored({64, 0, 0})), last), std::out_of_range);
+  EXPECT_THROW(merge_maps(single_point({65, 1, 1}, test::anchored({64, 0, 0})), last), std::out_of_range);
 }
 
 }  // namespace

@@ -9,7 +9,7 @@
 namespace vdbmap {
 namespace {
 
-const Eigen::Vector3d kUtm(550'000, 5'800'000, 50);  // [m]
+const Eigen::Vector3d kFarAway(550'000, 5'800'000, 50);  // [m]
 
 Moments single(const Eigen::Vector3d& point) { return {.count = 1, .mean = point}; }
 
@@ -47,9 +47,9 @@ TEST(Moments, OfEvenlySpacedPointsHaveTheVarianceOfWholeNumbers) {
 }
 
 TEST(Moments, OfRepeatedPointsHaveNoScatter) {
-  const Moments moments = merged_one_by_one(std::vector<Eigen::Vector3d>(50, kUtm));
+  const Moments moments = merged_one_by_one(std::vector<Eigen::Vector3d>(50, kFarAway));
   EXPECT_EQ(moments.count, 50);
-  EXPECT_EQ(moments.mean, kUtm);
+  EXPECT_EQ(moments.mean, kFarAway);
   EXPECT_EQ(moments.scatter, Eigen::Matrix3d::Zero());
 }
 
@@ -74,7 +74,7 @@ TEST(Moments, MergedInAnyTreeAreThoseOfTwoPasses) {
 }
 
 TEST(Moments, MergeKeepsPrecisionFarFromTheOrigin) {
-  const std::vector<Eigen::Vector3d> points = points_around(kUtm, 1000, 3);
+  const std::vector<Eigen::Vector3d> points = points_around(kFarAway, 1000, 3);
   const Moments merged = merged_one_by_one(points);
   const Moments direct = test::two_pass_moments(points);
   // Doubles near 5.8e6 lie 9e-10 m apart, which the mean carries into offsets of 0.05 m; sums of squares would lose
@@ -84,7 +84,7 @@ TEST(Moments, MergeKeepsPrecisionFarFromTheOrigin) {
 }
 
 TEST(Moments, NothingIsTheNeutralElementOfMerge) {
-  const Moments some = test::two_pass_moments(points_around(kUtm, 10, 4));
+  const Moments some = test::two_pass_moments(points_around(kFarAway, 10, 4));
   for (const Moments& merged : {merge(some, Moments()), merge(Moments(), some)}) {
     EXPECT_EQ(merged.count, some.count);
     EXPECT_EQ(merged.mean, some.mean);

@@ -11,7 +11,7 @@
 namespace vdbmap {
 namespace {
 
-const Eigen::AlignedBox3d kBox(Eigen::Vector3d(-15, -2, -1), Eigen::Vector3d(14, 2, 1));
+const Eigen::AlignedBox3d kAcrossBlocks(Eigen::Vector3d(-15, -2, -1), Eigen::Vector3d(14, 2, 1));
 
 std::vector<FoldedBlock> folded(const PointCloud& cloud, std::size_t begin, std::size_t end) {
   return fold_points(cloud, begin, end, Eigen::Isometry3d::Identity(), 10);
@@ -26,7 +26,7 @@ VoxelSums total(const std::vector<FoldedBlock>& blocks) {
 }
 
 TEST(PointFold, AnyPartOfACloudFoldsLikeACloudOfItsOwn) {
-  const PointCloud cloud = test::random_cloud(60'000, kBox, 1);  // several tasks of 16,384 points
+  const PointCloud cloud = test::random_cloud(60'000, kAcrossBlocks, 1);  // several tasks of 16,384 points
   for (const auto& [begin, end] :
        std::vector<std::pair<std::size_t, std::size_t>>{{0, 1}, {7, 20'000}, {20'000, 60'000}}) {
     const std::vector<FoldedBlock> part = folded(cloud, begin, end);
@@ -48,7 +48,7 @@ TEST(PointFold, AnyPartOfACloudFoldsLikeACloudOfItsOwn) {
 TEST(PointFold, EveryPointIsCountedOnceInItsVoxel) {
   // Up to some thousand points a block: both ways of sorting.
   for (const std::size_t count : {10UL, 511UL, 512UL, 50'000UL}) {
-    const PointCloud cloud = test::random_cloud(count, kBox, 2);
+    const PointCloud cloud = test::random_cloud(count, kAcrossBlocks, 2);
     const std::vector<FoldedBlock> blocks = folded(cloud, 0, count);
     const test::PointsByVoxel expected = test::points_by_voxel(cloud.positions, 0.1);
     std::size_t num_voxels = 0;
@@ -59,7 +59,7 @@ TEST(PointFold, EveryPointIsCountedOnceInItsVoxel) {
 }
 
 TEST(PointFold, BlocksAndVoxelsComeSortedAndOnce) {
-  const std::vector<FoldedBlock> blocks = folded(test::random_cloud(50'000, kBox, 3), 0, 50'000);
+  const std::vector<FoldedBlock> blocks = folded(test::random_cloud(50'000, kAcrossBlocks, 3), 0, 50'000);
   ASSERT_GT(blocks.size(), 3U);
   for (std::size_t i = 1; i < blocks.size(); ++i) EXPECT_LT(blocks[i - 1].block, blocks[i].block);
   for (const FoldedBlock& block : blocks) {

@@ -7,12 +7,11 @@
 
 #include <gtest/gtest.h>
 
+#include "tests/support/sample_maps.h"
 #include "vdbmap/core/map_builder.h"
 
 namespace vdbmap {
 namespace {
-
-const Eigen::Vector3d kUtm(548'864.0, 5'804'032.0, 0.0);  // [m] whole tiles of 64 m in UTM zone 32
 
 PointCloud random_cloud(const Eigen::Vector3d& center, double half_edge, std::size_t count) {
   std::mt19937 random(1);
@@ -62,8 +61,8 @@ std::vector<VoxelId> ids_of(const std::vector<VoxelInfo>& voxels) {
 
 class VoxelQuery : public testing::Test {
  protected:
-  PointCloud cloud_ = random_cloud(kUtm, 2.0, 20'000);
-  VoxelMap map_ = build_map(cloud_, {.voxel_sizes = {0.1, 1.0}, .anchor = kUtm, .epsg = {}, .epoch = {}});
+  PointCloud cloud_ = random_cloud(test::kUtm, 2.0, 20'000);
+  VoxelMap map_ = build_map(cloud_, {.voxel_sizes = {0.1, 1.0}, .anchor = test::kUtm, .epsg = {}, .epoch = {}});
 };
 
 TEST_F(VoxelQuery, TheVoxelAtAPointHoldsTheMomentsOfItsPoints) {
@@ -95,7 +94,7 @@ TEST_F(VoxelQuery, TheIdLeadsToTheSameVoxel) {
 
 TEST_F(VoxelQuery, WhereNothingIsThereIsNoVoxel) {
   const double nan = std::numeric_limits<double>::quiet_NaN();
-  EXPECT_FALSE(voxel_at(map_, map_.finest(), kUtm + Eigen::Vector3d(3, 0, 0)));
+  EXPECT_FALSE(voxel_at(map_, map_.finest(), test::kUtm + Eigen::Vector3d(3, 0, 0)));
   EXPECT_FALSE(voxel_at(map_, map_.finest(), Eigen::Vector3d::Zero()));  // beyond all indices
   EXPECT_FALSE(voxel_at(map_, map_.finest(), Eigen::Vector3d(nan, 0, 0)));
   EXPECT_FALSE(voxel_with_id(map_, map_.finest(), id_of_voxel({30, 0, 0})));
@@ -106,7 +105,7 @@ TEST_F(VoxelQuery, ABoxHoldsTheVoxelsThatTouchIt) {
   std::mt19937 random(2);
   std::uniform_real_distribution<double> offset(-2.5, 2.5);
   const auto corner = [&]() -> Eigen::Vector3d {
-    return kUtm + Eigen::Vector3d(offset(random), offset(random), offset(random));
+    return test::kUtm + Eigen::Vector3d(offset(random), offset(random), offset(random));
   };
   for (int i = 0; i < 50; ++i) {
     const Eigen::Vector3d a = corner();
@@ -133,7 +132,7 @@ TEST_F(VoxelQuery, ABoxWithoutVolumeIsAPoint) {
 }
 
 TEST_F(VoxelQuery, ABoxFarAwayIsEmpty) {
-  const Eigen::Vector3d far = kUtm + Eigen::Vector3d::Constant(1e7);
+  const Eigen::Vector3d far = test::kUtm + Eigen::Vector3d::Constant(1e7);
   EXPECT_TRUE(voxels_in_box(map_, map_.finest(), {far, 2 * far}).empty());
   EXPECT_TRUE(voxels_in_box(map_, map_.finest(), {-2 * far, -far}).empty());
 }

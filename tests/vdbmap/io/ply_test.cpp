@@ -15,7 +15,7 @@ namespace {
 using test::io_error_of;
 using test::raw;
 
-constexpr float kNan = std::numeric_limits<float>::quiet_NaN();
+constexpr float kNotANumber = std::numeric_limits<float>::quiet_NaN();
 constexpr std::endian kBig = std::endian::big;
 
 class Ply : public testing::Test {
@@ -148,7 +148,7 @@ TEST_F(Ply, PassesOverOtherElementsAndLists) {
 TEST_F(Ply, DropsAndCountsPointsThatAreNotFinite) {
   const ReadResult result =
       read(header("binary_little_endian", "4", "property float intensity\n") + raw(1.0f, 2.0f, 3.0f, 10.0f) +
-           raw(kNan, 2.0f, 3.0f, 20.0f) + raw(1.0f, 2.0f, -INFINITY, 30.0f) + raw(4.0f, 5.0f, 6.0f, 40.0f));
+           raw(kNotANumber, 2.0f, 3.0f, 20.0f) + raw(1.0f, 2.0f, -INFINITY, 30.0f) + raw(4.0f, 5.0f, 6.0f, 40.0f));
 
   EXPECT_EQ(result.num_dropped, 2u);
   ASSERT_EQ(result.cloud.size(), 2u);

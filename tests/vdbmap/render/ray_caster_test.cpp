@@ -8,6 +8,7 @@
 #include <gtest/gtest.h>
 
 #include "tests/support/random_points.h"
+#include "tests/support/sample_maps.h"
 #include "tests/support/sanitizers.h"
 #include "vdbmap/core/map_builder.h"
 
@@ -15,14 +16,6 @@ namespace vdbmap {
 namespace {
 
 constexpr double kSize = 0.1;  // [m]
-
-VoxelMap map_of(const std::vector<VoxelIndex>& voxels) {
-  PointCloud cloud;
-  for (const VoxelIndex& voxel : voxels) cloud.positions.push_back(center_of_voxel(voxel, kSize));
-  BuildOptions options;
-  options.anchor = Eigen::Vector3d::Zero();
-  return build_map(cloud, options);
-}
 
 // Where a ray enters a voxel, by three pairs of planes; infinity where it misses or begins inside.
 struct BoxEntry {
@@ -54,7 +47,7 @@ BoxEntry enter(const Ray& ray, const VoxelIndex& voxel) {
 
 void expect_same_as_brute_force(const std::vector<VoxelIndex>& voxels, double reach, std::size_t num_rays,
                                 unsigned seed) {
-  const VoxelMap map = map_of(voxels);
+  const VoxelMap map = test::map_of_voxels(voxels);
   const RayCaster caster(map.finest());
   std::mt19937 random(seed);
   const auto origins =
@@ -102,7 +95,7 @@ TEST(RayCaster, AgreesWithRaysAgainstEveryBoxAcrossAllLevelsOfTheTree) {
 }
 
 TEST(RayCaster, RaysAlongTheAxesEnterTheFacingSide) {
-  const VoxelMap map = map_of({{0, 0, 0}});
+  const VoxelMap map = test::map_of_voxels({{0, 0, 0}});
   const RayCaster caster(map.finest());
   const Eigen::Vector3d middle(0.05, 0.05, 0.05);
   for (VoxelFace face = 0; face < 6; ++face) {
@@ -118,7 +111,7 @@ TEST(RayCaster, RaysAlongTheAxesEnterTheFacingSide) {
 }
 
 TEST(RayCaster, RaysAlongTheBorderOfVoxelsBelongToTheUpperOne) {
-  const VoxelMap map = map_of({{0, 0, 0}, {0, 8, 0}});
+  const VoxelMap map = test::map_of_voxels({{0, 0, 0}, {0, 8, 0}});
   const RayCaster caster(map.finest());
   // y = 0 is the lower face of voxel 0: it holds it; y = 0.1 belongs to the empty voxel 1.
   EXPECT_TRUE(caster.first_hit({{-1, 0, 0.05}, {1, 0, 0}}).has_value());
@@ -126,7 +119,7 @@ TEST(RayCaster, RaysAlongTheBorderOfVoxelsBelongToTheUpperOne) {
 }
 
 TEST(RayCaster, TheVoxelInWhichARayBeginsIsNotInItsWay) {
-  const VoxelMap map = map_of({{0, 0, 0}, {1, 0, 0}, {5, 0, 0}});
+  const VoxelMap map = test::map_of_voxels({{0, 0, 0}, {1, 0, 0}, {5, 0, 0}});
   const RayCaster caster(map.finest());
   const Ray ray{{0.05, 0.05, 0.05}, {1, 0, 0}};
   EXPECT_NEAR(caster.first_hit(ray)->distance, 0.05, 1e-12);
@@ -137,7 +130,7 @@ TEST(RayCaster, TheVoxelInWhichARayBeginsIsNotInItsWay) {
 
 TEST(RayCaster, FindsTheRecordOfTheVoxel) {
   const std::vector<VoxelIndex> voxels = test::random_voxels(500, -30, 30, 5);
-  const VoxelMap map = map_of(voxels);
+  const VoxelMap map = test::map_of_voxels(voxels);
   const RayCaster caster(map.finest());
   const VoxelFinder finder(map.finest());
   for (const VoxelIndex& voxel : voxels) {
@@ -152,7 +145,7 @@ TEST(RayCaster, FindsTheRecordOfTheVoxel) {
 TEST(RayCaster, NothingIsHitInAnEmptyLevelOrByARayWithoutDirection) {
   const VoxelLevel empty(kSize, {}, {});
   EXPECT_FALSE(RayCaster(empty).first_hit({{0, 0, 0}, {1, 0, 0}}).has_value());
-  const VoxelMap map = map_of({{0, 0, 0}, {3, 3, 3}});
+  const VoxelMap map = test::map_of_voxels({{0, 0, 0}, {3, 3, 3}});
   const RayCaster caster(map.finest());
   for (const double bad : {0.0, std::nan("")}) {
     EXPECT_FALSE(caster.first_hit({{0.15, 0.15, 0.15}, Eigen::Vector3d::Constant(bad)}).has_value());

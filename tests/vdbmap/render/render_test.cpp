@@ -21,16 +21,6 @@
 namespace vdbmap {
 namespace {
 
-constexpr double kSize = 0.1;  // [m]
-
-VoxelMap map_of(const std::vector<VoxelIndex>& voxels) {
-  PointCloud cloud;
-  for (const VoxelIndex& voxel : voxels) cloud.positions.push_back(center_of_voxel(voxel, kSize));
-  BuildOptions options;
-  options.anchor = Eigen::Vector3d::Zero();
-  return build_map(cloud, options);
-}
-
 const VoxelMap& street_map() {
   static const VoxelMap map = build_map(test::sample_scene(test::street(), test::kIsSanitized ? 20 : 100, 1));
   return map;
@@ -49,7 +39,7 @@ RenderOptions small(View view) {
 
 TEST(VoxelView, ASingleVoxelCoversThePixelsThatItShould) {
   // 2 m away, with 0.5 mrad a pixel: the near face of 10 cm appears 100 pixels wide, the far one 95.
-  const VoxelMap map = map_of({{20, 0, 0}});
+  const VoxelMap map = test::map_of_voxels({{20, 0, 0}});
   const ImageSize size{400, 300};
   const double field_of_view_deg = 2 * std::atan(200 * 0.0005) * 180 / 3.14159265358979;
   const Eigen::Isometry3d eye = map_from_camera_at({0, 0.05, 0.05}, 0, 0);
@@ -64,7 +54,7 @@ TEST(VoxelView, ASingleVoxelCoversThePixelsThatItShould) {
 }
 
 TEST(VoxelView, EdgesAreAntiAliased) {
-  const VoxelMap map = map_of({{20, 0, 0}});
+  const VoxelMap map = test::map_of_voxels({{20, 0, 0}});
   const Eigen::Isometry3d eye = map_from_camera_at({0, 0.05, 0.05}, 0, 0);
   Eigen::Isometry3d rolled = eye;
   rolled.linear() = eye.linear() * Eigen::AngleAxisd(0.2, Eigen::Vector3d::UnitZ()).toRotationMatrix();
@@ -91,7 +81,7 @@ TEST(VoxelView, APixelOfAPlanShowsItsPlace) {
   }
   const ImageSize size{300, 300};
   const Camera camera = Camera::orthographic(map_from_camera_at({1, 1, 10}, 90, -90), 3, size);
-  const VoxelView view = view_of(map_of(voxels), camera);
+  const VoxelView view = view_of(test::map_of_voxels(voxels), camera);
   for (int y = 0; y < 300; ++y) {
     for (int x = 0; x < 300; ++x) {
       const int i = static_cast<int>(std::floor((x + 0.5) / 10)) - 5;
@@ -107,7 +97,7 @@ TEST(VoxelView, APixelOfAPlanShowsItsPlace) {
 
 TEST(VoxelView, BeamsHideNothing) {
   // Every pixel against the ray alone, for cameras near and far and inside.
-  const VoxelMap map = map_of(test::random_voxels(3000, -60, 60, 7));
+  const VoxelMap map = test::map_of_voxels(test::random_voxels(3000, -60, 60, 7));
   const RayCaster caster(map.finest());
   std::mt19937 random(8);
   const ImageSize size{83, 61};
@@ -137,7 +127,7 @@ TEST(VoxelView, PlacesUnderARoofAreDarkerThanOpenOnes) {
       if (i < 40) voxels.emplace_back(i, j, 20);
     }
   }
-  const VoxelMap map = map_of(voxels);
+  const VoxelMap map = test::map_of_voxels(voxels);
   const Camera camera = Camera::perspective(map_from_camera_at({6, -6, 1.2}, 90, -8), 90, {300, 200});
   const VoxelView view = view_of(map, camera);
   const auto brightness = [&](const Eigen::Vector3d& point) {
@@ -194,7 +184,7 @@ TEST_P(RenderViews, TinyMapsAndPicturesAreDrawn) {
   for (const ImageSize& size : {ImageSize{1, 1}, ImageSize{3, 500}, ImageSize{500, 3}}) {
     RenderOptions options = small(GetParam());
     options.size = size;
-    const Image image = render(map_of({{5, 5, 5}}), options).image;
+    const Image image = render(test::map_of_voxels({{5, 5, 5}}), options).image;
     EXPECT_EQ(image.width(), size.width);
     EXPECT_EQ(image.height(), size.height);
   }
@@ -232,7 +222,7 @@ TEST(Render, PathsLieWhereTheyShouldAndArePaleBehindVoxels) {
   RenderOptions options = small(View::kPerspective);
   options.camera = {0, 0, 1.2, 0, 0, 60};
   options.has_decoration = false;
-  const VoxelMap map = map_of(voxels);
+  const VoxelMap map = test::map_of_voxels(voxels);
   const Image image = render(map, options, overlays).image;
   const Camera camera = Camera::perspective(map_from_camera_at({0, 0, 1.2}, 0, 0), 60, options.size);
   const auto at = [&](double x) {
@@ -252,7 +242,7 @@ TEST(Render, PointsOnASurfaceAreSeenAndThoseBehindItNot) {
   }
   RenderOptions options = small(View::kPerspective);
   options.camera = {0, 0, 1.2, 0, 0, 60};
-  const VoxelMap map = map_of(voxels);
+  const VoxelMap map = test::map_of_voxels(voxels);
   const std::string without = png_of(render(map, options).image);
   RenderOverlays hidden;
   hidden.points.push_back({"", {{7, 0, 1.2}, {-3, 0, 1.2}}});
@@ -301,8 +291,8 @@ TEST(Render, SparsePointsAreDrawnAtACoarserLevel) {
 TEST(Render, ACameraInsideOfAVoxelIsNoted) {
   RenderOptions options = small(View::kPerspective);
   options.camera = {0.55, 0.55, 0.55, 0, 0};
-  EXPECT_TRUE(render(map_of({{5, 5, 5}, {30, 5, 5}}), options).is_camera_in_voxel);
-  EXPECT_FALSE(render(map_of({{4, 5, 5}}), options).is_camera_in_voxel);
+  EXPECT_TRUE(render(test::map_of_voxels({{5, 5, 5}, {30, 5, 5}}), options).is_camera_in_voxel);
+  EXPECT_FALSE(render(test::map_of_voxels({{4, 5, 5}}), options).is_camera_in_voxel);
 }
 
 TEST(Render, WhatCannotBeDrawnIsRefused) {

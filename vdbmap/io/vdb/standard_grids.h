@@ -4,15 +4,18 @@
 #include <openvdb/openvdb.h>
 #include <openvdb/points/PointDataGrid.h>
 
-// The grids of our files. OpenVDB's library holds them, compiled: said here, since its headers do not, and each file
-// that makes such a grid would compile all of it again, for ten seconds. Grid::create(tree) is missing there: take
-// std::make_shared.
+// The grids of our files, and of others that are checked. OpenVDB's library holds them, compiled: said here, since its
+// headers do not, and each file that makes such a grid would compile all of it again, for ten seconds.
+// Grid::create(tree) is missing there: take std::make_shared.
 #define VDBMAP_STANDARD_GRID(Type)                                         \
   extern template class openvdb::tree::Tree<Type::TreeType::RootNodeType>; \
   extern template class openvdb::Grid<Type::TreeType>
 
+VDBMAP_STANDARD_GRID(openvdb::BoolGrid);
+VDBMAP_STANDARD_GRID(openvdb::DoubleGrid);
 VDBMAP_STANDARD_GRID(openvdb::FloatGrid);
 VDBMAP_STANDARD_GRID(openvdb::Int32Grid);
+VDBMAP_STANDARD_GRID(openvdb::Vec3DGrid);
 VDBMAP_STANDARD_GRID(openvdb::Vec3SGrid);
 VDBMAP_STANDARD_GRID(openvdb::points::PointDataGrid);
 
