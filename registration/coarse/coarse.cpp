@@ -11,7 +11,7 @@
 namespace vdbmap::registration {
 namespace {
 
-constexpr int kMaxReach = 8;  // voxels that a search can span
+constexpr int kMaxReach = 32;  // voxels; a larger radius would search for hours
 
 // How unusual each feature is among those of the map: flat ground and walls look alike everywhere.
 std::vector<float> distinctiveness(const FpfhMatrix& features, const Eigen::VectorXf& mean,
@@ -38,7 +38,8 @@ std::vector<std::uint32_t> most_distinctive(const FpfhMatrix& features, const Ei
 void check_reach(double radius, const VoxelLevel& level, const char* name) {
   if (radius > 0 && radius <= kMaxReach * level.voxel_size()) return;
   std::ostringstream message;
-  message << name << " is " << radius << ", expected more than 0 up to 8 voxels of " << level.voxel_size() << " m";
+  message << name << " is " << radius << ", expected more than 0 up to " << kMaxReach << " voxels of "
+          << level.voxel_size() << " m";
   throw std::invalid_argument(message.str());
 }
 

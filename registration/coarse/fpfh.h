@@ -27,7 +27,7 @@ PairAngles pair_angles(const Eigen::Vector3d& point_a, const Eigen::Vector3d& no
                        const Eigen::Vector3d& normal_b);
 
 /// Fast point feature histograms of all voxels of a level (Mortazavi 2023, eq. 4; Rusu 2009): that of a point alone and
-/// those of its neighbours within `radius` [m, at most 8 voxels], weighted by the inverse of their distance. The same
+/// those of its neighbours within `radius` [m], weighted by the inverse of their distance. The same
 /// for any number of threads.
 FpfhMatrix fpfh_features(const VoxelLevel& level, const SurfacePoints& points, double radius);
 
