@@ -25,6 +25,13 @@ std::vector<Ray> rays_of(const SampledScan& sample) {
 
 double angle_of(const Eigen::Isometry3d& motion) { return Eigen::AngleAxisd(motion.linear()).angle(); }
 
+// The pose of what moves rigidly with the scan.
+PoseEstimate carried(const PoseEstimate& scan, const Eigen::Isometry3d& scan_from_other) {
+  Matrix6d motion_of_other = Matrix6d::Identity();  // as in moved_by()
+  motion_of_other.bottomLeftCorner<3, 3>() = -cross_matrix(scan.map_from_scan.linear() * scan_from_other.translation());
+  return {scan.map_from_scan * scan_from_other, motion_of_other * scan.covariance * motion_of_other.transpose()};
+}
+
 std::string reason_not_found(const Evidence& evidence, const FoundCriteria& criteria) {
   if (evidence.num_points == 0) return "no point lies within the range limits";
   const double share = evidence.explained_share();
@@ -43,6 +50,12 @@ struct Localizer::State {
     SampledScan sample;
     Eigen::Isometry3d odometry_from_scan;
     bool follows = true;
+    std::optional<ScanSweep> sweep;
+
+    /// Motion from the middle of the scan's time to its first point, as it was deskewed.
+    Eigen::Isometry3d first_from_middle() const {
+      return sweep ? sweep->first_from_middle() : Eigen::Isometry3d::Identity();
+    }
   };
 
   const VoxelMap* map;
@@ -62,7 +75,8 @@ struct Localizer::State {
   void carry(Poses& poses, bool forward) const;
   std::vector<FineResult> align_each(const Poses& poses) const;
   std::vector<PoseEstimate> join(const Poses& poses, std::span<const FineResult> fine) const;
-  SequenceScan judge(std::size_t number, const PoseEstimate& pose, const FineResult& fine) const;
+  PoseEstimate at_first_point(std::size_t number, const Poses& poses, std::span<const PoseEstimate> middles) const;
+  SequenceScan judge(std::size_t number, const PoseEstimate& middle, const FineResult& fine) const;
   std::optional<std::size_t> linked(std::size_t number, bool forward) const;
 
   static Eigen::Isometry3d step_between(const KeptScan& previous, const KeptScan& scan) {
@@ -169,29 +183,48 @@ std::vector<FineResult> Localizer::State::align_each(const Poses& poses) const {
   return results;
 }
 
+// Of the middles of the scans' times: their first points lie where the twist of the deskewing puts them.
 std::vector<PoseEstimate> Localizer::State::join(const Poses& poses, std::span<const FineResult> fine) const {
   constexpr double kMaxShift = 1.0;    // [m] of a scan from where its batch puts it: farther ones went astray
   constexpr double kMaxTurn = 0.0873;  // [rad] 5 degrees
   std::vector<SequencePose> sequence(scans.size());
   for (std::size_t i = 0; i < scans.size(); ++i) {
     if (!poses[i]) continue;
-    sequence[i].map_from_scan_guess = *poses[i];
+    const Eigen::Isometry3d first_from_middle = scans[i].first_from_middle();
+    sequence[i].map_from_scan_guess = *poses[i] * first_from_middle;
     const Eigen::Isometry3d shift = poses[i]->inverse() * fine[i].map_from_scan;
     if (fine[i].inlier_share >= options.found.min_inlier_share && shift.translation().norm() < kMaxShift &&
         angle_of(shift) < kMaxTurn) {
-      sequence[i].in_map = PoseEstimate{fine[i].map_from_scan, fine[i].covariance};
+      sequence[i].in_map = carried({fine[i].map_from_scan, fine[i].covariance}, first_from_middle);
     }
     if (i > 0 && scans[i].follows && poses[i - 1])
-      sequence[i].previous_from_scan = step_between(scans[i - 1], scans[i]);
+      sequence[i].previous_from_scan =
+          scans[i - 1].first_from_middle().inverse() * step_between(scans[i - 1], scans[i]) * first_from_middle;
   }
   return refine_jointly(sequence, options.joint);
 }
 
-SequenceScan Localizer::State::judge(std::size_t number, const PoseEstimate& pose, const FineResult& fine) const {
+// From where the scans before, at and after were in the middle of their times: the twist of the deskewing, from
+// odometry, knows less.
+PoseEstimate Localizer::State::at_first_point(std::size_t number, const Poses& poses,
+                                              std::span<const PoseEstimate> middles) const {
+  const std::optional<ScanSweep>& sweep = scans[number].sweep;
+  if (!sweep) return middles[number];
+  const auto timed = [&](std::size_t i) { return TimedPose{scans[i].sweep->middle_time, middles[i].map_from_scan}; };
+  std::optional<TimedPose> neighbours[2];
+  for (const bool forward : {true, false}) {
+    const std::optional<std::size_t> from = linked(number, forward);
+    if (from && poses[*from] && scans[*from].sweep) neighbours[forward ? 0 : 1] = timed(*from);
+  }
+  const Eigen::Isometry3d& map_from_middle = middles[number].map_from_scan;
+  const Eigen::Isometry3d map_from_first = pose_at_time(sweep->first_time, neighbours[0], timed(number), neighbours[1]);
+  return carried(middles[number], map_from_middle.inverse() * map_from_first);
+}
+
+SequenceScan Localizer::State::judge(std::size_t number, const PoseEstimate& middle, const FineResult& fine) const {
   constexpr double kMaxDeviation = 0.5;  // [m] a pose less certain is no answer
+  const PoseEstimate pose = carried(middle, scans[number].first_from_middle().inverse());
   SequenceScan scan;
-  scan.map_from_scan = pose.map_from_scan;
-  scan.covariance = pose.covariance;
   scan.unobservable = fine.unobservable;
   const SampledScan& sample = scans[number].sample;
   scan.evidence = weigh(sample.fine, rays_of(sample), *map, pose.map_from_scan);
@@ -214,6 +247,9 @@ SequenceResult Localizer::State::locate_all() {
   parallel_for(scans.size(), [&](std::size_t i) {
     if (poses[i]) {
       result.scans[i] = judge(i, joined[i], fine[i]);
+      const PoseEstimate first = at_first_point(i, poses, joined);
+      result.scans[i].map_from_scan = first.map_from_scan;
+      result.scans[i].covariance = first.covariance;
     } else {
       result.scans[i].reason = "its batch was not found";
     }
@@ -264,7 +300,7 @@ void Localizer::add(const OdometryScan& scan) {
 
   const FineOptions& fine = state.options.fine;
   state.scans.push_back({sample_scan(scan.points_in_scan, fine.fine_spacing, fine.coarse_spacing, fine.range),
-                         scan.odometry_from_scan, scan.follows && !state.scans.empty()});
+                         scan.odometry_from_scan, scan.follows && !state.scans.empty(), scan.sweep});
   SequenceBatch& batch = state.batches.back();
   ++batch.count;
   state.open_batch->add(scan.points_in_scan, state.scans.back().sample,

@@ -1,28 +1,48 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "registration/sequence.h"
 
+#include <span>
 #include <utility>
 
 #include "registration/rigid_motion.h"
 
 namespace vdbmap::registration {
+namespace {
+
+// [s] from the first point to the mean of all.
+double mean_lead(std::span<const double> times, double first) {
+  double sum = 0;
+  for (const double time : times) sum += time - first;
+  return times.empty() ? 0 : sum / static_cast<double>(times.size());
+}
+
+}  // namespace
 
 SequenceLocalizer::SequenceLocalizer(const VoxelMap& map, const LocalizerOptions& options,
                                      const OdometryOptions& odometry)
-    : localizer_(map, options),
-      odometry_options_(odometry),
-      odometry_(odometry),
-      stream_([this](const PointCloud& scan, const Eigen::Isometry3d& pose) { receive(scan, pose); }) {}
+    : localizer_(map, options), odometry_options_(odometry), odometry_(odometry), stream_(new_stream()) {}
 
-void SequenceLocalizer::receive(const PointCloud& deskewed_scan, const Eigen::Isometry3d& odometry_from_scan) {
+DeskewStream SequenceLocalizer::new_stream() {
+  return DeskewStream([this](const PointCloud& scan, const Eigen::Isometry3d& pose, const ScanMotion& motion) {
+    receive(scan, pose, motion);
+  });
+}
+
+void SequenceLocalizer::receive(const PointCloud& deskewed_scan, const Eigen::Isometry3d& odometry_from_scan,
+                                const ScanMotion& motion) {
   const bool follows = !std::exchange(is_first_of_segment_, false);
-  localizer_.add({deskewed_scan.positions, odometry_from_scan, follows});
+  OdometryScan scan{deskewed_scan.positions, odometry_from_scan, follows};
+  if (!motion.twist.isZero(0)) {
+    const double first = motion.reference_time;
+    scan.sweep = ScanSweep{first, first + mean_lead(deskewed_scan.times, first), motion.twist};
+  }
+  localizer_.add(scan);
 }
 
 // From here on odometry knows nothing of the scans before.
 void SequenceLocalizer::begin_segment() {
   stream_.finish();
-  stream_ = DeskewStream([this](const PointCloud& scan, const Eigen::Isometry3d& pose) { receive(scan, pose); });
+  stream_ = new_stream();
   is_first_of_segment_ = true;
   last_given_.reset();
 }

@@ -49,7 +49,8 @@ class SequenceLocalizer {
 
   void take(PointCloud scan, const OdometryStep& step);
   void begin_segment();
-  void receive(const PointCloud& deskewed_scan, const Eigen::Isometry3d& odometry_from_scan);
+  void receive(const PointCloud& deskewed_scan, const Eigen::Isometry3d& odometry_from_scan, const ScanMotion& motion);
+  DeskewStream new_stream();
   OdometryStep follow(const PointCloud& scan, const Eigen::Isometry3d& odometry_from_scan);
 
   Localizer localizer_;

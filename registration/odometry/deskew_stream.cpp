@@ -22,7 +22,7 @@ void DeskewStream::finish() {
 }
 
 void DeskewStream::hand_on(PointCloud scan, const OdometryStep& step) {
-  receiver_(deskew(std::move(scan), step.motion), step.first_from_scan);
+  receiver_(deskew(std::move(scan), step.motion), step.first_from_scan, step.motion);
 }
 
 }  // namespace vdbmap::registration

@@ -15,7 +15,9 @@ namespace vdbmap::registration {
 /// its motion becomes known.
 class DeskewStream {
  public:
-  using Receiver = std::function<void(const PointCloud& deskewed_scan, const Eigen::Isometry3d& first_from_scan)>;
+  /// The motion is that which the scan was deskewed with.
+  using Receiver = std::function<void(const PointCloud& deskewed_scan, const Eigen::Isometry3d& first_from_scan,
+                                      const ScanMotion& motion)>;
 
   explicit DeskewStream(Receiver receiver) : receiver_(std::move(receiver)) {}
 

@@ -40,7 +40,7 @@ void OdometryOutputs::check(const std::vector<std::filesystem::path>& inputs) co
 
 OdometryCollector::OdometryCollector(const OdometryOutputs& outputs)
     : outputs_(outputs),
-      stream_([this](const PointCloud& scan, const Eigen::Isometry3d& pose) { receive(scan, pose); }),
+      stream_([this](const PointCloud& scan, const Eigen::Isometry3d& pose, const auto&) { receive(scan, pose); }),
       map_(map_options()) {}
 
 void OdometryCollector::add(PointCloud scan, const registration::OdometryStep& step) {

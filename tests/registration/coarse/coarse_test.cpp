@@ -60,7 +60,7 @@ TEST(Coarse, DoesNotDependOnTheNumberOfThreads) {
 
 TEST(Coarse, RefusesOptionsOutOfRange) {
   CoarseOptions options;
-  options.feature_radius = 9;  // voxels of 1 m: 8 at most
+  options.feature_radius = 33;  // voxels of 1 m: 32 at most
   EXPECT_THROW(prepare_coarse_map(street_level(), options), std::invalid_argument);
   options = {};
   options.map_share = 0;

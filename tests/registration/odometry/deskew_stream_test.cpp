@@ -25,8 +25,9 @@ OdometryStep step_at(double time, double speed) {
 
 struct Received {
   std::vector<double> last_x;  // of each scan's second point
-  DeskewStream stream{
-      [this](const PointCloud& scan, const Eigen::Isometry3d&) { last_x.push_back(scan.positions.back().x()); }};
+  DeskewStream stream{[this](const PointCloud& scan, const Eigen::Isometry3d&, const ScanMotion&) {
+    last_x.push_back(scan.positions.back().x());
+  }};
 };
 
 TEST(DeskewStream, TheFirstScanHasTheMotionOfTheSecond) {

@@ -108,7 +108,7 @@ class GridFinder {
       if (!is_whole) fail(floats.getName(), "holds " + std::to_string(*value) + ", expected a whole number");
       target.setValue(static_cast<std::int32_t>(*value));
     }
-    auto grid = std::make_shared<Int32Grid>(tree);
+    auto grid = Int32Grid::create(tree);
     grid->setName(floats.getName());
     grid->setTransform(floats.transform().copy());
     return grid;

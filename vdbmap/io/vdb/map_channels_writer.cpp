@@ -31,7 +31,7 @@ typename Grid::Ptr make_channel(const VoxelLevel& level, const ValueOf& value_of
         });
       },
       64);
-  auto grid = std::make_shared<Grid>(tree);
+  auto grid = Grid::create(tree);
   grid->setTransform(transform_of_level(level.voxel_size()));
   return grid;
 }

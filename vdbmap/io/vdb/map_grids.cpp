@@ -21,7 +21,7 @@ openvdb::math::Transform::Ptr transform_of_level(double voxel_size) {
 
 openvdb::FloatGrid::Ptr make_density_grid(const VoxelLevel& level, float density) {
   const auto tree = std::make_shared<openvdb::FloatTree>(level.tree(), 0.0f, density, openvdb::TopologyCopy());
-  auto grid = std::make_shared<openvdb::FloatGrid>(tree);
+  auto grid = openvdb::FloatGrid::create(tree);
   grid->setTransform(transform_of_level(level.voxel_size()));
   grid->setGridClass(openvdb::GRID_FOG_VOLUME);
   grid->setSaveFloatAsHalf(true);
@@ -42,7 +42,7 @@ openvdb::Vec3SGrid::Ptr make_color_grid(const VoxelLevel& level) {
         });
       },
       64);
-  auto grid = std::make_shared<openvdb::Vec3SGrid>(tree);
+  auto grid = openvdb::Vec3SGrid::create(tree);
   grid->setTransform(transform_of_level(level.voxel_size()));
   grid->setVectorType(openvdb::VEC_INVARIANT);
   return grid;  // not as half floats: the two zero bytes of a short float compress better than a half's mantissa

@@ -4,12 +4,13 @@
 #include <openvdb/openvdb.h>
 #include <openvdb/points/PointDataGrid.h>
 
-// The grids of our files, and of others that are checked. OpenVDB's library holds them, compiled: said here, since its
-// headers do not, and each file that makes such a grid would compile all of it again, for ten seconds.
-// Grid::create(tree) is missing there: take std::make_shared.
+// The grids of our files, and of others that are checked. OpenVDB's library holds their trees and what a grid does to a
+// whole tree, compiled: said here, since its headers do not, and each file that makes such a grid would compile all of
+// it again, for ten seconds.
 #define VDBMAP_STANDARD_GRID(Type)                                         \
   extern template class openvdb::tree::Tree<Type::TreeType::RootNodeType>; \
-  extern template class openvdb::Grid<Type::TreeType>
+  extern template void openvdb::Grid<Type::TreeType>::pruneGrid(float);    \
+  extern template void openvdb::Grid<Type::TreeType>::clip(const openvdb::CoordBBox&)
 
 VDBMAP_STANDARD_GRID(openvdb::BoolGrid);
 VDBMAP_STANDARD_GRID(openvdb::DoubleGrid);

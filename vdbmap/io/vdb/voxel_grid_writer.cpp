@@ -146,7 +146,7 @@ points::PointDataGrid::Ptr make_voxel_grid(const VoxelLevel& level, bool has_col
     write_channel<IntArray>(leaf, "first_epoch", voxels, level.channels().first_epochs);
     write_channel<IntArray>(leaf, "last_epoch", voxels, level.channels().last_epochs);
   });
-  auto grid = std::make_shared<points::PointDataGrid>(tree);
+  auto grid = points::PointDataGrid::create(tree);
   grid->setTransform(transform_of_level(level.voxel_size() * kVoxelsPerCell));
   return grid;
 }

@@ -1,0 +1,57 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "registration/scan_sweep.h"
+
+#include <gtest/gtest.h>
+
+#include "tests/support/pose_distance.h"
+
+namespace vdbmap::registration {
+namespace {
+
+Vector6d twist_of(const Eigen::Vector3d& turn, const Eigen::Vector3d& velocity) {
+  Vector6d twist;
+  twist << turn, velocity;
+  return twist;
+}
+
+void expect_near(const Eigen::Isometry3d& found, const Eigen::Isometry3d& expected) {
+  const auto distance = test::distance_between(found, expected);
+  EXPECT_LT(distance.translation, 1e-9);
+  EXPECT_LT(distance.rotation_deg, 1e-6);
+}
+
+TEST(PoseAtTime, FollowsAConstantTwist) {
+  const Vector6d twist = twist_of({0.1, -0.2, 0.7}, {8, 0.3, -0.2});
+  const Eigen::Isometry3d start(Eigen::Translation3d(500, 600, 70) * Eigen::AngleAxisd(1, Eigen::Vector3d::UnitZ()));
+  const auto at = [&](double time) { return TimedPose{time, start * motion_of_twist(time * twist)}; };
+  const Eigen::Isometry3d expected = at(0.15).map_from_sensor;
+  expect_near(pose_at_time(0.15, at(0.08), at(0.2), at(0.31)), expected);
+  expect_near(pose_at_time(0.15, at(0.08), at(0.2), std::nullopt), expected);
+  expect_near(pose_at_time(0.15, std::nullopt, at(0.2), at(0.31)), expected);
+}
+
+TEST(PoseAtTime, FollowsAConstantAcceleration) {
+  const auto at = [](double time) {
+    const Eigen::Vector3d position(8 * time + 1.5 * time * time, 0, 0.4 * time - 2 * time * time);
+    return TimedPose{time, Eigen::Isometry3d(Eigen::Translation3d(position))};
+  };
+  expect_near(pose_at_time(0.15, at(0.1), at(0.2), at(0.33)), at(0.15).map_from_sensor);
+}
+
+TEST(PoseAtTime, FollowsATurnThatQuickens) {
+  const auto at = [](double time) {
+    return TimedPose{time,
+                     Eigen::Isometry3d(Eigen::AngleAxisd(0.3 * time + 2 * time * time, Eigen::Vector3d::UnitY()))};
+  };
+  expect_near(pose_at_time(0.15, at(0.1), at(0.2), at(0.3)), at(0.15).map_from_sensor);
+}
+
+TEST(PoseAtTime, StaysWithoutNeighboursInTime) {
+  const TimedPose alone{5, Eigen::Isometry3d(Eigen::Translation3d(1, 2, 3))};
+  const TimedPose same_time{5, Eigen::Isometry3d::Identity()};
+  expect_near(pose_at_time(4.9, std::nullopt, alone, std::nullopt), alone.map_from_sensor);
+  expect_near(pose_at_time(4.9, same_time, alone, same_time), alone.map_from_sensor);
+}
+
+}  // namespace
+}  // namespace vdbmap::registration
