@@ -100,7 +100,7 @@ class VoxelFinder {
     return records_ + leaf->transientData() + rank_in_leaf(*leaf, offset);
   }
 
-  /// Calls body(voxel, record) for every occupied voxel whose index differs by at most `reach` (0 or more) on each axis.
+  /// Calls body(voxel, record) for every occupied voxel whose index differs by at most `reach` on each axis.
   /// Leaf by leaf, and in a leaf whole rows of its bit mask at once: empty cells cost next to nothing.
   template <typename Body>
   void for_each_around(const VoxelIndex& center, std::int32_t reach, const Body& body) const {
