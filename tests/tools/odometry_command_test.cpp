@@ -6,6 +6,7 @@
 #include <fstream>
 #include <thread>
 
+#include "tests/support/sanitizers.h"
 #include "tests/tools/map_command.h"
 #include "tools/cli/stop_request.h"
 #include "vdbmap/io/kitti_bin.h"
@@ -135,7 +136,8 @@ TEST_F(OdometryCommand, CtrlCWritesThePosesSoFar) {
     std::vector<std::string> arguments = {"odometry", "-o", path("odometry.txt")};
     arguments.insert(arguments.end(), 6000, folder);
     const auto interrupt = [&](pid_t process) {
-      std::this_thread::sleep_for(std::chrono::seconds(2));
+      // Until scans are being registered, not only listed.
+      std::this_thread::sleep_for(std::chrono::seconds(test::kIsSanitized ? 10 : 2));
       ::kill(process, signal);
     };
     const test::CommandResult result = test::run_command(VDBMAP_COMMAND, arguments, {.while_running = interrupt});
