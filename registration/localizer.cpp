@@ -8,12 +8,14 @@
 
 #include "registration/batch_builder.h"
 #include "registration/percent.h"
+#include "registration/pose_at_time.h"
 #include "vdbmap/core/parallel.h"
 
 namespace vdbmap::registration {
 namespace {
 
 constexpr double kUprightTilt_deg = 10;
+constexpr double kDrift = 0.03;  // [m/m] of odometry
 
 std::vector<Ray> rays_of(const SampledScan& sample) {
   constexpr std::size_t kRays = 500;
@@ -50,12 +52,7 @@ struct Localizer::State {
     SampledScan sample;
     Eigen::Isometry3d odometry_from_scan;
     bool follows = true;
-    std::optional<ScanSweep> sweep;
-
-    /// Motion from the middle of the scan's time to its first point, as it was deskewed.
-    Eigen::Isometry3d first_from_middle() const {
-      return sweep ? sweep->first_from_middle() : Eigen::Isometry3d::Identity();
-    }
+    ScanMotion motion;
   };
 
   const VoxelMap* map;
@@ -72,11 +69,13 @@ struct Localizer::State {
   void reject_contradictions();
   bool do_agree(const SequenceBatch& a, const SequenceBatch& b) const;
   Poses poses_of_batches() const;
+  std::vector<double> drift_in_batches() const;
   void carry(Poses& poses, bool forward) const;
   std::vector<FineResult> align_each(const Poses& poses) const;
   std::vector<PoseEstimate> join(const Poses& poses, std::span<const FineResult> fine) const;
   PoseEstimate at_first_point(std::size_t number, const Poses& poses, std::span<const PoseEstimate> middles) const;
-  SequenceScan judge(std::size_t number, const PoseEstimate& middle, const FineResult& fine) const;
+  SequenceScan judge(std::size_t number, const PoseEstimate& first, const PoseEstimate& middle,
+                     const FineResult& fine) const;
   std::optional<std::size_t> linked(std::size_t number, bool forward) const;
 
   static Eigen::Isometry3d step_between(const KeptScan& previous, const KeptScan& scan) {
@@ -99,7 +98,6 @@ void Localizer::State::close_batch() {
 // Whether odometry leads from one batch's place to the other's, as far as it can be trusted; true across gaps, where
 // nothing is known.
 bool Localizer::State::do_agree(const SequenceBatch& a, const SequenceBatch& b) const {
-  constexpr double kDrift = 0.03;       // [m/m] of odometry
   constexpr double kTranslation = 2.0;  // [m]
   constexpr double kRotation = 0.175;   // [rad] 10 degrees
   double path = 0;
@@ -145,6 +143,19 @@ Poses Localizer::State::poses_of_batches() const {
   return poses;
 }
 
+// [m] of each scan, by its way from the middle of its batch: all of a batch is moved as one.
+std::vector<double> Localizer::State::drift_in_batches() const {
+  std::vector<double> drift(scans.size());
+  for (const SequenceBatch& batch : batches) {
+    const std::size_t last = batch.first + batch.count - 1;
+    const std::size_t middle = batch.first + batch.count / 2;
+    const auto step = [&](std::size_t i) { return kDrift * step_between(scans[i - 1], scans[i]).translation().norm(); };
+    for (std::size_t i = middle + 1; i <= last; ++i) drift[i] = drift[i - 1] + step(i);
+    for (std::size_t i = middle; i > batch.first; --i) drift[i - 1] = drift[i] + step(i);
+  }
+  return drift;
+}
+
 // The scan from which odometry leads to this one, going forward or backward through the sequence.
 std::optional<std::size_t> Localizer::State::linked(std::size_t number, bool forward) const {
   if (forward) return number > 0 && scans[number].follows ? std::optional(number - 1) : std::nullopt;
@@ -185,21 +196,22 @@ std::vector<FineResult> Localizer::State::align_each(const Poses& poses) const {
 
 // Of the middles of the scans' times: their first points lie where the twist of the deskewing puts them.
 std::vector<PoseEstimate> Localizer::State::join(const Poses& poses, std::span<const FineResult> fine) const {
-  constexpr double kMaxShift = 1.0;    // [m] of a scan from where its batch puts it: farther ones went astray
+  constexpr double kMaxShift = 1.0;  // [m] and drift, of a scan from where its batch puts it: farther ones went astray
   constexpr double kMaxTurn = 0.0873;  // [rad] 5 degrees
+  const std::vector<double> drift = drift_in_batches();
   std::vector<SequencePose> sequence(scans.size());
   for (std::size_t i = 0; i < scans.size(); ++i) {
     if (!poses[i]) continue;
-    const Eigen::Isometry3d first_from_middle = scans[i].first_from_middle();
+    const Eigen::Isometry3d first_from_middle = scans[i].motion.first_from_middle();
     sequence[i].map_from_scan_guess = *poses[i] * first_from_middle;
     const Eigen::Isometry3d shift = poses[i]->inverse() * fine[i].map_from_scan;
-    if (fine[i].inlier_share >= options.found.min_inlier_share && shift.translation().norm() < kMaxShift &&
+    if (fine[i].inlier_share >= options.found.min_inlier_share && shift.translation().norm() < kMaxShift + drift[i] &&
         angle_of(shift) < kMaxTurn) {
       sequence[i].in_map = carried({fine[i].map_from_scan, fine[i].covariance}, first_from_middle);
     }
     if (i > 0 && scans[i].follows && poses[i - 1])
       sequence[i].previous_from_scan =
-          scans[i - 1].first_from_middle().inverse() * step_between(scans[i - 1], scans[i]) * first_from_middle;
+          scans[i - 1].motion.first_from_middle().inverse() * step_between(scans[i - 1], scans[i]) * first_from_middle;
   }
   return refine_jointly(sequence, options.joint);
 }
@@ -208,28 +220,41 @@ std::vector<PoseEstimate> Localizer::State::join(const Poses& poses, std::span<c
 // odometry, knows less.
 PoseEstimate Localizer::State::at_first_point(std::size_t number, const Poses& poses,
                                               std::span<const PoseEstimate> middles) const {
-  const std::optional<ScanSweep>& sweep = scans[number].sweep;
-  if (!sweep) return middles[number];
-  const auto timed = [&](std::size_t i) { return TimedPose{scans[i].sweep->middle_time, middles[i].map_from_scan}; };
-  std::optional<TimedPose> neighbours[2];
-  for (const bool forward : {true, false}) {
-    const std::optional<std::size_t> from = linked(number, forward);
-    if (from && poses[*from] && scans[*from].sweep) neighbours[forward ? 0 : 1] = timed(*from);
+  const auto is_deskewed = [&](std::size_t i) { return !scans[i].motion.twist.isZero(0); };
+  const auto timed = [&](std::size_t i) {
+    return TimedPose{scans[i].motion.elapsed + scans[i].motion.lead, middles[i].map_from_scan};
+  };
+  const TimedPose at = timed(number);
+  const auto neighbour = [&](bool is_before) -> std::optional<TimedPose> {
+    const std::optional<std::size_t> from = linked(number, is_before);
+    if (!from || !poses[*from] || !is_deskewed(*from)) return std::nullopt;
+    const TimedPose pose = timed(*from);
+    const bool is_in_order = is_before ? pose.time < at.time : pose.time > at.time;  // turns may overlap
+    return is_in_order ? std::optional(pose) : std::nullopt;
+  };
+  const std::optional<TimedPose> before = neighbour(true);
+  const std::optional<TimedPose> after = neighbour(false);
+  const ScanMotion& motion = scans[number].motion;
+  if (!is_deskewed(number) || (!before && !after)) {
+    return carried(middles[number], motion.first_from_middle().inverse());
   }
-  const Eigen::Isometry3d& map_from_middle = middles[number].map_from_scan;
-  const Eigen::Isometry3d map_from_first = pose_at_time(sweep->first_time, neighbours[0], timed(number), neighbours[1]);
-  return carried(middles[number], map_from_middle.inverse() * map_from_first);
+  const Eigen::Isometry3d map_from_first = pose_at_time(motion.elapsed, before, at, after);
+  return carried(middles[number], at.map_from_sensor.inverse() * map_from_first);
 }
 
-SequenceScan Localizer::State::judge(std::size_t number, const PoseEstimate& middle, const FineResult& fine) const {
+// The evidence is that of the deskewed points, which lie where the middle says.
+SequenceScan Localizer::State::judge(std::size_t number, const PoseEstimate& first, const PoseEstimate& middle,
+                                     const FineResult& fine) const {
   constexpr double kMaxDeviation = 0.5;  // [m] a pose less certain is no answer
-  const PoseEstimate pose = carried(middle, scans[number].first_from_middle().inverse());
   SequenceScan scan;
+  scan.map_from_scan = first.map_from_scan;
+  scan.covariance = first.covariance;
   scan.unobservable = fine.unobservable;
   const SampledScan& sample = scans[number].sample;
-  scan.evidence = weigh(sample.fine, rays_of(sample), *map, pose.map_from_scan);
+  const Eigen::Isometry3d map_from_points = middle.map_from_scan * scans[number].motion.first_from_middle().inverse();
+  scan.evidence = weigh(sample.fine, rays_of(sample), *map, map_from_points);
   scan.reason = reason_not_found(scan.evidence, options.found);
-  const double deviation = std::sqrt(pose.covariance.bottomRightCorner<3, 3>().trace());
+  const double deviation = std::sqrt(first.covariance.bottomRightCorner<3, 3>().trace());
   if (scan.found() && deviation > kMaxDeviation) scan.reason = "neither the map nor odometry determine its place";
   return scan;
 }
@@ -246,10 +271,7 @@ SequenceResult Localizer::State::locate_all() {
   result.scans.resize(scans.size());
   parallel_for(scans.size(), [&](std::size_t i) {
     if (poses[i]) {
-      result.scans[i] = judge(i, joined[i], fine[i]);
-      const PoseEstimate first = at_first_point(i, poses, joined);
-      result.scans[i].map_from_scan = first.map_from_scan;
-      result.scans[i].covariance = first.covariance;
+      result.scans[i] = judge(i, at_first_point(i, poses, joined), joined[i], fine[i]);
     } else {
       result.scans[i].reason = "its batch was not found";
     }
@@ -300,7 +322,7 @@ void Localizer::add(const OdometryScan& scan) {
 
   const FineOptions& fine = state.options.fine;
   state.scans.push_back({sample_scan(scan.points_in_scan, fine.fine_spacing, fine.coarse_spacing, fine.range),
-                         scan.odometry_from_scan, scan.follows && !state.scans.empty(), scan.sweep});
+                         scan.odometry_from_scan, scan.follows && !state.scans.empty(), scan.motion});
   SequenceBatch& batch = state.batches.back();
   ++batch.count;
   state.open_batch->add(scan.points_in_scan, state.scans.back().sample,

@@ -13,7 +13,7 @@
 #include "registration/batch_search.h"
 #include "registration/fine/joint_refinement.h"
 #include "registration/localize.h"
-#include "registration/scan_sweep.h"
+#include "registration/odometry/deskew.h"
 #include "vdbmap/core/voxel_map.h"
 
 namespace vdbmap::registration {
@@ -36,8 +36,8 @@ struct LocalizerOptions {
 struct OdometryScan {
   std::span<const Eigen::Vector3d> points_in_scan;  ///< [m] deskewed
   Eigen::Isometry3d odometry_from_scan = Eigen::Isometry3d::Identity();
-  bool follows = true;                            ///< odometry leads here from the scan before; false after a gap
-  std::optional<ScanSweep> sweep = std::nullopt;  ///< where the points have times
+  bool follows = true;     ///< odometry leads here from the scan before; false after a gap
+  ScanMotion motion = {};  ///< that the points were deskewed with; zero where they have no times
 };
 
 /// One scan of the sequence, localized.

@@ -1,22 +1,11 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "registration/sequence.h"
 
-#include <span>
 #include <utility>
 
 #include "registration/rigid_motion.h"
 
 namespace vdbmap::registration {
-namespace {
-
-// [s] from the first point to the mean of all.
-double mean_lead(std::span<const double> times, double first) {
-  double sum = 0;
-  for (const double time : times) sum += time - first;
-  return times.empty() ? 0 : sum / static_cast<double>(times.size());
-}
-
-}  // namespace
 
 SequenceLocalizer::SequenceLocalizer(const VoxelMap& map, const LocalizerOptions& options,
                                      const OdometryOptions& odometry)
@@ -31,12 +20,7 @@ DeskewStream SequenceLocalizer::new_stream() {
 void SequenceLocalizer::receive(const PointCloud& deskewed_scan, const Eigen::Isometry3d& odometry_from_scan,
                                 const ScanMotion& motion) {
   const bool follows = !std::exchange(is_first_of_segment_, false);
-  OdometryScan scan{deskewed_scan.positions, odometry_from_scan, follows};
-  if (!motion.twist.isZero(0)) {
-    const double first = motion.reference_time;
-    scan.sweep = ScanSweep{first, first + mean_lead(deskewed_scan.times, first), motion.twist};
-  }
-  localizer_.add(scan);
+  localizer_.add({deskewed_scan.positions, odometry_from_scan, follows, motion});
 }
 
 // From here on odometry knows nothing of the scans before.
@@ -74,8 +58,10 @@ OdometryStep SequenceLocalizer::follow(const PointCloud& scan, const Eigen::Isom
   step.has_time = timing.first.has_value();
   step.time_problem = timing.problem;
   step.motion.reference_time = timing.first.value_or(0);
+  step.motion.elapsed = timing.elapsed;
   if (step.has_time && last_given_) {
     step.motion.twist = twist_of_motion(last_given_->inverse() * odometry_from_scan) / timing.interval;
+    step.motion.lead = mean_lead(scan.times, step.motion.reference_time);
   }
   last_given_ = odometry_from_scan;
   return step;

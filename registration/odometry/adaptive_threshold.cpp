@@ -2,14 +2,11 @@
 #include "registration/odometry/adaptive_threshold.h"
 
 #include <cmath>
-#include <stdexcept>
-#include <string>
 
 #include "registration/odometry/require_positive.h"
 #include "registration/rigid_motion.h"
 
 namespace vdbmap::registration {
-namespace {}  // namespace
 
 double deviation_at_range(const Eigen::Isometry3d& motion, double max_range) {
   const double angle = twist_of_motion(motion).head<3>().norm();

@@ -42,6 +42,12 @@ class TwistMotion {
 
 }  // namespace
 
+double mean_lead(std::span<const double> times, double first) {
+  double sum = 0;
+  for (const double time : times) sum += time - first;  // of small numbers, without loss
+  return times.empty() ? 0 : sum / static_cast<double>(times.size());
+}
+
 std::vector<Eigen::Vector3d> deskew_points(std::span<const Eigen::Vector3d> positions, std::span<const double> times,
                                            const ScanMotion& motion) {
   if (positions.size() != times.size()) {

@@ -50,13 +50,6 @@ std::vector<Eigen::Vector3d> moved(std::vector<Eigen::Vector3d> points, const Ei
   return points;
 }
 
-// Of numbers near `origin`, without loss.
-double mean_of(const std::vector<double>& numbers, double origin) {
-  double sum = 0;
-  for (const double number : numbers) sum += number - origin;
-  return origin + sum / static_cast<double>(numbers.size());
-}
-
 // The covariance of a pose by the axes of another frame.
 Matrix6d with_axes_of(const Matrix6d& covariance, const Eigen::Matrix3d& axes) {
   Matrix6d turn = Matrix6d::Zero();
@@ -104,7 +97,7 @@ Odometry::Sample Odometry::sample_of(const PointCloud& scan, const ScanTiming& t
     sample.positions.push_back(scan.positions[i]);
     if (has_times) sample.times.push_back(scan.times[i]);
   }
-  sample.lead = sample.times.empty() ? last_lead_ : mean_of(sample.times, sample.first_time) - sample.first_time;
+  sample.lead = sample.times.empty() ? last_lead_ : mean_lead(sample.times, sample.first_time);
   return sample;
 }
 
@@ -137,6 +130,8 @@ OdometryStep Odometry::register_scan(const PointCloud& scan) {
   step.has_time = timing.first.has_value();
   if (options_.deskews) step.time_problem = timing.problem;
   step.motion.reference_time = sample.first_time;
+  step.motion.lead = sample.lead;
+  step.motion.elapsed = timing.elapsed;
   step.sigma = threshold_.sigma();
   step.first_from_scan = motion_.at_first_point(motion_.predicted_pose());
 

@@ -47,6 +47,13 @@ std::string problem_of(const PointCloud& scan, TimeSpan& span) {
 }  // namespace
 
 ScanTiming ScanClock::next(const PointCloud& scan) {
+  ScanTiming timing = judge(scan);
+  elapsed_ = elapsed_ ? *elapsed_ + timing.interval : 0;
+  timing.elapsed = *elapsed_;
+  return timing;
+}
+
+ScanTiming ScanClock::judge(const PointCloud& scan) {
   ScanTiming timing;
   timing.interval = last_interval_;
   timing.usual_interval = last_interval_;

@@ -13,6 +13,7 @@ struct ScanTiming {
   std::optional<double> first;  ///< [s] time of the first point; nothing where the times cannot be used
   double interval = 0.1;        ///< [s] from the scan before to this one
   double usual_interval = 0.1;  ///< [s] as it was between the scans before
+  double elapsed = 0;           ///< [s] since the first scan of the sequence began; never stands still
   std::string problem;          ///< why the scan's times cannot be used; empty also where it has none
 };
 
@@ -23,8 +24,11 @@ class ScanClock {
   ScanTiming next(const PointCloud& scan);
 
  private:
+  ScanTiming judge(const PointCloud& scan);
+
   std::optional<double> last_first_;  // [s]
   double last_interval_ = 0.1;        // [s] of a scanner that turns ten times a second, until known
+  std::optional<double> elapsed_;     // [s] of the last scan
 };
 
 }  // namespace vdbmap::registration

@@ -74,26 +74,50 @@ Eigen::Isometry3d jolted_sensor_at(double seconds) {
          Eigen::AngleAxisd(0.01 * std::cos(phase), Eigen::Vector3d::UnitY());
 }
 
-TEST(Sequence, FirstPointsOfAJoltedScannerAreFoundBetweenItsScans) {
-  constexpr int kScans = 10;
+constexpr int kJoltedScans = 10;
+
+// Whose time stamps are common to all scans, or begin anew with each.
+std::vector<PointCloud> jolted_scans(bool have_common_epoch) {
   constexpr double kPeriod = 0.1;  // [s]
   std::vector<PointCloud> scans;
-  for (int i = 0; i < kScans; ++i) {
+  for (int i = 0; i < kJoltedScans; ++i) {
     test::Scanner scanner;
     scanner.num_azimuths = 600;
     scanner.range_noise = 0.01;
     scanner.seed = static_cast<unsigned>(i) + 1;
     scans.push_back(test::scan_while_moving(test::village(), jolted_sensor_at, kPeriod * i, kPeriod, scanner));
+    if (have_common_epoch) continue;
+    for (double& time : scans.back().times) time -= kPeriod * i;
   }
-  const SequenceResult result = localize(scans);
+  return scans;
+}
+
+// Root mean square [m] of the scans with a neighbour on both sides.
+double jolted_error(const SequenceResult& result) {
   double sum_of_squares = 0;
-  for (std::size_t i = 1; i + 1 < kScans; ++i) {
+  for (std::size_t i = 1; i + 1 < kJoltedScans; ++i) {
     const SequenceScan& scan = result.scans[i];
     EXPECT_TRUE(scan.found()) << i << ": " << scan.reason;
-    const Eigen::Isometry3d truth = jolted_sensor_at(kPeriod * static_cast<double>(i));
+    const Eigen::Isometry3d truth = jolted_sensor_at(0.1 * static_cast<double>(i));
     sum_of_squares += (scan.map_from_scan.translation() - truth.translation()).squaredNorm();
   }
-  EXPECT_LT(std::sqrt(sum_of_squares / (kScans - 2)), 0.01);
+  return std::sqrt(sum_of_squares / (kJoltedScans - 2));
+}
+
+TEST(Sequence, FirstPointsOfAJoltedScannerAreFoundBetweenItsScans) {
+  EXPECT_LT(jolted_error(localize(jolted_scans(true))), 0.01);
+}
+
+TEST(Sequence, TimeStampsMayBeginAnewWithEachScan) { EXPECT_LT(jolted_error(localize(jolted_scans(false))), 0.01); }
+
+TEST(Sequence, GivenOdometryTellsTheFirstPointsToo) {
+  // The path is all that odometry knows: it begins where the sensor did.
+  const std::vector<PointCloud> scans = jolted_scans(true);
+  SequenceLocalizer localizer(street_map());
+  for (std::size_t i = 0; i < scans.size(); ++i) {
+    localizer.add(scans[i], jolted_sensor_at(0).inverse() * jolted_sensor_at(0.1 * static_cast<double>(i)));
+  }
+  EXPECT_LT(jolted_error(localizer.finish()), 0.01);
 }
 
 TEST(Sequence, IsFoundInAMapAtUtmCoordinates) {

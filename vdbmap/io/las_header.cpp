@@ -27,7 +27,6 @@ constexpr std::uint64_t kExtendedOffsetAt = 235;
 constexpr std::uint64_t kNumExtendedRecordsAt = 243;
 constexpr std::uint64_t kNumPointsAt = 247;
 
-constexpr std::uint64_t kHeaderSize = 227;    // [bytes] up to version 1.2, and in 1.3 without waveforms
 constexpr std::uint64_t kHeaderSize14 = 375;  // [bytes]
 constexpr std::uint16_t kWktBit = 1 << 4;
 constexpr std::uint8_t kCompressionBits = 0xc0;
@@ -59,7 +58,7 @@ void read_version(ByteReader& file, LasHeader& header) {
 
 void read_sections(ByteReader& file, LasHeader& header) {
   header.size = read_at<std::uint16_t>(file, kHeaderSizeAt);
-  const std::uint64_t least_size = header.minor_version >= 4 ? kHeaderSize14 : kHeaderSize;
+  const std::uint64_t least_size = header.minor_version >= 4 ? kHeaderSize14 : kLasHeaderSize;
   if (header.size < least_size) {
     fail_at(file, kHeaderSizeAt,
             "header of " + std::to_string(header.size) + " bytes, expected at least " + std::to_string(least_size) +

@@ -13,6 +13,9 @@
 
 namespace vdbmap {
 
+/// [bytes] of the header up to version 1.2, and in 1.3 without waveforms.
+inline constexpr std::uint16_t kLasHeaderSize = 227;
+
 /// Where a point record holds what; its coordinates are at byte 0 and its intensity at 12.
 struct LasPointFormat {
   std::size_t length = 0;  ///< [bytes] without extra bytes

@@ -17,9 +17,8 @@
 namespace vdbmap {
 namespace {
 
-constexpr std::uint16_t kHeaderSizeWritten = 227;  // [bytes]
-constexpr std::uint16_t kRecordHeaderSize = 54;    // [bytes]
-constexpr std::uint16_t kHighestLabel = 31;        // 5 bits
+constexpr std::uint16_t kRecordHeaderSize = 54;  // [bytes]
+constexpr std::uint16_t kHighestLabel = 31;      // 5 bits
 constexpr std::uint8_t kFirstOfOneReturn = 0b001'001;
 
 template <Scalar T>
@@ -107,8 +106,8 @@ std::string header(const PointCloud& cloud, const Quantization& quantization, st
   append_padded(bytes, "OTHER", 32);
   append_padded(bytes, "vdbmap", 32);
   append<std::uint32_t>(bytes, 0);  // no date: the same points make the same file
-  append(bytes, kHeaderSizeWritten);
-  append(bytes, static_cast<std::uint32_t>(kHeaderSizeWritten + records_size));
+  append(bytes, kLasHeaderSize);
+  append(bytes, static_cast<std::uint32_t>(kLasHeaderSize + records_size));
   append<std::uint32_t>(bytes, records_size == 0 ? 0 : 1);
   append(bytes, static_cast<std::uint8_t>(format));
   append(bytes, static_cast<std::uint16_t>(find_las_point_format(format)->length));

@@ -14,28 +14,6 @@
 namespace vdbmap {
 namespace {
 
-// A grid over all voxels of the level with the values that value_of(record number) gives.
-template <typename Grid, typename ValueOf>
-typename Grid::Ptr make_channel(const VoxelLevel& level, const ValueOf& value_of) {
-  using Tree = typename Grid::TreeType;
-  const auto tree =
-      std::make_shared<Tree>(level.tree(), openvdb::zeroVal<typename Tree::ValueType>(), openvdb::TopologyCopy());
-  std::vector<typename Tree::LeafNodeType*> targets;
-  tree->getNodes(targets);
-  const std::vector<const VoxelLeaf*> sources = level.leaves();
-  parallel_for(
-      sources.size(),
-      [&](std::size_t i) {
-        for_each_voxel(*sources[i], [&](const VoxelIndex& voxel, std::size_t number) {
-          targets[i]->setValueOnly(voxel, value_of(number));
-        });
-      },
-      64);
-  auto grid = Grid::create(tree);
-  grid->setTransform(transform_of_level(level.voxel_size()));
-  return grid;
-}
-
 float exact_float(std::int32_t value) {
   const auto rounded = static_cast<float>(value);
   if (static_cast<double>(rounded) != value) {
@@ -57,7 +35,7 @@ class LevelExport {
     add("density", make_density_grid(level_, options_.density));
     add_moments();
     add_vectors("normal", openvdb::VEC_COVARIANT_NORMALIZE, normal_value_of);
-    add("planarity", make_channel<openvdb::FloatGrid>(
+    add("planarity", make_channel_grid<openvdb::FloatGrid>(
                          level_, [&](std::size_t i) { return planarity_value_of(level_.records()[i]); }));
     if (map_.has_color) add_vectors("color", openvdb::VEC_INVARIANT, color_value_of);
     add_optional_channels();
@@ -75,7 +53,7 @@ class LevelExport {
   template <typename ValueOf>
   void add_vectors(const std::string& name, openvdb::VecType type, const ValueOf& value_of) {
     const auto grid =
-        make_channel<openvdb::Vec3SGrid>(level_, [&](std::size_t i) { return value_of(level_.records()[i]); });
+        make_channel_grid<openvdb::Vec3SGrid>(level_, [&](std::size_t i) { return value_of(level_.records()[i]); });
     grid->setVectorType(type);
     add(name, grid);
   }
@@ -83,9 +61,9 @@ class LevelExport {
   template <typename ValueOf>
   void add_integers(const std::string& name, const ValueOf& value_of) {
     if (options_.integers_as_float) {
-      add(name, make_channel<openvdb::FloatGrid>(level_, [&](std::size_t i) { return exact_float(value_of(i)); }));
+      add(name, make_channel_grid<openvdb::FloatGrid>(level_, [&](std::size_t i) { return exact_float(value_of(i)); }));
     } else {
-      add(name, make_channel<openvdb::Int32Grid>(level_, value_of));
+      add(name, make_channel_grid<openvdb::Int32Grid>(level_, value_of));
     }
   }
 
@@ -103,7 +81,7 @@ class LevelExport {
     const VoxelChannels& channels = level_.channels();
     if (!channels.intensities.empty()) {
       add("intensity",
-          make_channel<openvdb::FloatGrid>(level_, [&](std::size_t i) { return channels.intensities[i]; }));
+          make_channel_grid<openvdb::FloatGrid>(level_, [&](std::size_t i) { return channels.intensities[i]; }));
     }
     if (!channels.first_epochs.empty()) {
       add_integers("first_epoch", [&](std::size_t i) { return channels.first_epochs[i]; });

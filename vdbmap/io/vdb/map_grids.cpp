@@ -29,21 +29,10 @@ openvdb::FloatGrid::Ptr make_density_grid(const VoxelLevel& level, float density
 }
 
 openvdb::Vec3SGrid::Ptr make_color_grid(const VoxelLevel& level) {
-  const auto tree = std::make_shared<openvdb::Vec3STree>(level.tree(), openvdb::Vec3f(0), openvdb::TopologyCopy());
-  std::vector<openvdb::Vec3STree::LeafNodeType*> targets;
-  tree->getNodes(targets);
-  const std::vector<const VoxelLeaf*> sources = level.leaves();
-  parallel_for(
-      sources.size(),
-      [&](std::size_t i) {
-        for_each_voxel(*sources[i], [&](const VoxelIndex& voxel, std::size_t number) {
-          const Eigen::Vector3d color = color_of(level.records()[number]);
-          targets[i]->setValueOnly(voxel, openvdb::Vec3f(color.cast<float>().eval().data()));
-        });
-      },
-      64);
-  auto grid = openvdb::Vec3SGrid::create(tree);
-  grid->setTransform(transform_of_level(level.voxel_size()));
+  const auto grid = make_channel_grid<openvdb::Vec3SGrid>(level, [&](std::size_t number) {
+    const Eigen::Vector3d color = color_of(level.records()[number]);
+    return openvdb::Vec3f(color.cast<float>().eval().data());
+  });
   grid->setVectorType(openvdb::VEC_INVARIANT);
   return grid;  // not as half floats: the two zero bytes of a short float compress better than a half's mantissa
 }

@@ -1,8 +1,11 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #pragma once
 
+#include <memory>
 #include <string>
+#include <vector>
 
+#include "vdbmap/core/parallel.h"
 #include "vdbmap/core/voxel_level.h"
 #include "vdbmap/io/vdb/standard_grids.h"
 
@@ -14,6 +17,28 @@ std::string level_suffix(double voxel_size, bool is_finest);
 
 /// The transform of a level's grids: voxel (i,j,k) covers [i s, (i+1) s), so OpenVDB's cell centres are shifted by s/2.
 openvdb::math::Transform::Ptr transform_of_level(double voxel_size);
+
+/// A grid over all voxels of the level with the values that value_of(record number) gives.
+template <typename Grid, typename ValueOf>
+typename Grid::Ptr make_channel_grid(const VoxelLevel& level, const ValueOf& value_of) {
+  using Tree = typename Grid::TreeType;
+  const auto tree =
+      std::make_shared<Tree>(level.tree(), openvdb::zeroVal<typename Tree::ValueType>(), openvdb::TopologyCopy());
+  std::vector<typename Tree::LeafNodeType*> targets;
+  tree->getNodes(targets);
+  const std::vector<const VoxelLeaf*> sources = level.leaves();
+  parallel_for(
+      sources.size(),
+      [&](std::size_t i) {
+        for_each_voxel(*sources[i], [&](const VoxelIndex& voxel, std::size_t number) {
+          targets[i]->setValueOnly(voxel, value_of(number));
+        });
+      },
+      64);
+  auto grid = Grid::create(tree);
+  grid->setTransform(transform_of_level(level.voxel_size()));
+  return grid;
+}
 
 /// A fog of one density in every voxel, for renderers.
 openvdb::FloatGrid::Ptr make_density_grid(const VoxelLevel& level, float density);

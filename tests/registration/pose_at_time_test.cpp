@@ -1,8 +1,9 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "registration/scan_sweep.h"
+#include "registration/pose_at_time.h"
 
 #include <gtest/gtest.h>
 
+#include "registration/rigid_motion.h"
 #include "tests/support/pose_distance.h"
 
 namespace vdbmap::registration {
@@ -46,11 +47,11 @@ TEST(PoseAtTime, FollowsATurnThatQuickens) {
   expect_near(pose_at_time(0.15, at(0.1), at(0.2), at(0.3)), at(0.15).map_from_sensor);
 }
 
-TEST(PoseAtTime, StaysWithoutNeighboursInTime) {
-  const TimedPose alone{5, Eigen::Isometry3d(Eigen::Translation3d(1, 2, 3))};
-  const TimedPose same_time{5, Eigen::Isometry3d::Identity()};
-  expect_near(pose_at_time(4.9, std::nullopt, alone, std::nullopt), alone.map_from_sensor);
-  expect_near(pose_at_time(4.9, same_time, alone, same_time), alone.map_from_sensor);
+TEST(PoseAtTime, NeedsANeighbourInTheOrderOfTime) {
+  const TimedPose at{5, Eigen::Isometry3d::Identity()};
+  EXPECT_THROW(pose_at_time(4.9, std::nullopt, at, std::nullopt), std::invalid_argument);
+  EXPECT_THROW(pose_at_time(4.9, at, at, std::nullopt), std::invalid_argument);
+  EXPECT_THROW(pose_at_time(4.9, std::nullopt, at, TimedPose{4, Eigen::Isometry3d::Identity()}), std::invalid_argument);
 }
 
 }  // namespace
