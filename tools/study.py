@@ -34,7 +34,7 @@ class Variant:
 
 @dataclass
 class Result:
-    seed: int
+    seed: str
     errors: list  # [m] XY of the scans found
     heights: list  # [m] Z of the scans found
     num_scans: int
@@ -226,7 +226,7 @@ def draw(results, path):
 def main():
     vdbmap, work, results_folder = sys.argv[1], pathlib.Path(sys.argv[2]), pathlib.Path(sys.argv[3])
     work.mkdir(parents=True, exist_ok=True)
-    streets = [Street(vdbmap, work / f"street{seed}", int(seed)) for seed in sys.argv[4:]]
+    streets = [Street(vdbmap, work / f"street{seed}", seed) for seed in sys.argv[4:]]
     results = {(v.question, v.name): [street.run(v) for street in streets] for v in VARIANTS}
     (results_folder / "study.md").write_text(table(results))
     draw(results, results_folder / "study.png")

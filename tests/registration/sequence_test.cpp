@@ -192,6 +192,22 @@ TEST(Sequence, IsNotFoundInAMapOfAnotherPlace) {
   EXPECT_FALSE(result.batches[0].search.reason.empty());
 }
 
+// Another part of the same street, with houses, cars and posts of the same kinds.
+TEST(Sequence, IsNotFoundInAMapThatItDoesNotOverlap) {
+  for (const double side : {-1.0, 1.0}) {
+    PointCloud survey = test::survey_of_village();
+    std::erase_if(survey.positions, [&](const Eigen::Vector3d& point) { return side * point.x() < 2; });
+    Drive drive(8, -side * 20 - 4);
+    for (std::size_t i = 0; i < drive.scans.size(); ++i) {
+      std::erase_if(drive.scans[i].positions,
+                    [&](const Eigen::Vector3d& point) { return side * (drive.map_from_scan[i] * point).x() > -2; });
+    }
+    const SequenceResult result = localize(drive.scans, build_map(survey));
+    for (const SequenceScan& scan : result.scans) EXPECT_FALSE(scan.found());
+    EXPECT_FALSE(result.batches[0].search.reason.empty());
+  }
+}
+
 TEST(Sequence, IsNotFoundWhereNothingTellsOnePlaceFromAnother) {
   const VoxelMap corridor = build_map(test::sample_scene(test::corridor(), 100, 1));
   test::Scanner scanner;
