@@ -46,6 +46,10 @@ class MapBuilder {
   /// The map of all points added, normals included; the builder is as new afterwards.
   VoxelMap finish();
 
+  /// As add() and then finish(), but faster, and with less memory, where the last cloud is a large part of the map.
+  VoxelMap finish(const PointCloud& last_cloud,
+                  const Eigen::Isometry3d& map_from_cloud = Eigen::Isometry3d::Identity());
+
  private:
   struct State;
   std::unique_ptr<State> state_;

@@ -33,7 +33,7 @@ class VoxelAssembly {
   double voxel_size_;
   VoxelKey last_key_{0};
   std::vector<std::unique_ptr<VoxelLeaf>> leaves_;
-  std::vector<VoxelRecord> records_;
+  LargeVector<VoxelRecord> records_;
   VoxelChannels channels_;
 };
 

@@ -1,8 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "vdbmap/core/voxel_block.h"
 
-#include <utility>
-
 namespace vdbmap {
 
 BlockSums merge_blocks(BlockSums a, BlockSums b) {
@@ -28,18 +26,12 @@ BlockSums merge_blocks(BlockSums a, BlockSums b) {
   return merged;
 }
 
-std::vector<std::unique_ptr<VoxelLeaf>> leaves_of_block(BlockKey block, const BlockSums& voxels) {
-  const VoxelIndex block_origin = origin_of_block(block);
-  std::vector<std::unique_ptr<VoxelLeaf>> leaves;
-  KeyInBlock leaf_of_last = ~KeyInBlock{0};
-  for (const KeyedSums& voxel : voxels) {
-    if (voxel.key >> 9 != leaf_of_last) {
-      leaf_of_last = voxel.key >> 9;
-      leaves.push_back(std::make_unique<VoxelLeaf>(block_origin + leaf_origin_in_block(voxel.key)));
-    }
-    leaves.back()->setValueOn(offset_in_leaf(voxel.key));
+void BlockLeaves::add(KeyInBlock voxel) {
+  if (voxel >> 9 != leaf_of_last_) {
+    leaf_of_last_ = voxel >> 9;
+    leaves_.push_back(std::make_unique<VoxelLeaf>(origin_ + leaf_origin_in_block(voxel)));
   }
-  return leaves;
+  leaves_.back()->setValueOn(offset_in_leaf(voxel));
 }
 
 }  // namespace vdbmap

@@ -3,6 +3,7 @@
 
 #include <cstdint>
 #include <memory>
+#include <utility>
 #include <vector>
 
 #include "vdbmap/core/voxel.h"
@@ -70,7 +71,20 @@ using BlockSums = std::vector<KeyedSums>;
 /// Union of two blocks; voxels in both are added.
 BlockSums merge_blocks(BlockSums a, BlockSums b);
 
-/// The leaves of a block's voxels, in tree order.
-std::vector<std::unique_ptr<VoxelLeaf>> leaves_of_block(BlockKey block, const BlockSums& voxels);
+/// Makes the leaves of a block of voxels that come in the order of their keys.
+class BlockLeaves {
+ public:
+  explicit BlockLeaves(BlockKey block) : origin_(origin_of_block(block)) {}
+
+  void add(KeyInBlock voxel);
+
+  /// The leaves so far, in tree order.
+  std::vector<std::unique_ptr<VoxelLeaf>> take() { return std::move(leaves_); }
+
+ private:
+  VoxelIndex origin_;
+  KeyInBlock leaf_of_last_ = ~KeyInBlock{0};
+  std::vector<std::unique_ptr<VoxelLeaf>> leaves_;
+};
 
 }  // namespace vdbmap

@@ -4,7 +4,7 @@
 namespace vdbmap {
 
 VoxelLevel::VoxelLevel(double voxel_size, std::vector<std::unique_ptr<VoxelLeaf>> leaves,
-                       std::vector<VoxelRecord> records, VoxelChannels channels)
+                       LargeVector<VoxelRecord> records, VoxelChannels channels)
     : voxel_size_(voxel_size),
       tree_(std::make_shared<VoxelTree>()),
       records_(std::move(records)),

@@ -10,6 +10,7 @@
 
 #include <openvdb/tree/ValueAccessor.h>
 
+#include "vdbmap/core/large_allocator.h"
 #include "vdbmap/core/parallel.h"
 #include "vdbmap/core/voxel.h"
 #include "vdbmap/core/voxel_record.h"
@@ -33,7 +34,7 @@ struct VoxelChannels {
 class VoxelLevel {
  public:
   /// Takes leaves in tree order with empty transientData, and the records of their active voxels in the same order.
-  VoxelLevel(double voxel_size, std::vector<std::unique_ptr<VoxelLeaf>> leaves, std::vector<VoxelRecord> records,
+  VoxelLevel(double voxel_size, std::vector<std::unique_ptr<VoxelLeaf>> leaves, LargeVector<VoxelRecord> records,
              VoxelChannels channels = {});
 
   double voxel_size() const { return voxel_size_; }  ///< [m]
@@ -52,7 +53,7 @@ class VoxelLevel {
  private:
   double voxel_size_;
   VoxelTree::Ptr tree_;
-  std::vector<VoxelRecord> records_;
+  LargeVector<VoxelRecord> records_;
   VoxelChannels channels_;
 };
 

@@ -32,11 +32,25 @@ void note(MapFromFiles& result, const MapInput& input, const ReadResult& read) {
   if (!input.map_from_scan) note_epsg(result, input.scan.file, read.epsg);
 }
 
+Eigen::Isometry3d pose_of(const MapInput& input) { return input.map_from_scan.value_or(Eigen::Isometry3d::Identity()); }
+
+[[noreturn]] void throw_unreachable(const MapInput& input, const std::out_of_range& error) {
+  throw IoError::malformed(input.scan.name(), error.what());
+}
+
 void add(MapBuilder& builder, const MapInput& input, const PointCloud& cloud) {
   try {
-    builder.add(cloud, input.map_from_scan.value_or(Eigen::Isometry3d::Identity()));
+    builder.add(cloud, pose_of(input));
   } catch (const std::out_of_range& error) {
-    throw IoError::malformed(input.scan.name(), error.what());
+    throw_unreachable(input, error);
+  }
+}
+
+VoxelMap finish(MapBuilder& builder, const MapInput& last_input, const PointCloud& last_cloud) {
+  try {
+    return builder.finish(last_cloud, pose_of(last_input));
+  } catch (const std::out_of_range& error) {
+    throw_unreachable(last_input, error);
   }
 }
 
@@ -50,12 +64,16 @@ MapFromFiles build_map_from_files(const std::vector<MapInput>& inputs, const Map
   std::future<ReadResult> next = start_reading(reader, inputs.front().scan, options.reads_ahead);
   for (std::size_t i = 0; i < inputs.size(); ++i) {
     const ReadResult read = next.get();
-    if (i + 1 < inputs.size()) next = start_reading(reader, inputs[i + 1].scan, options.reads_ahead);
+    const bool is_last = i + 1 == inputs.size();
+    if (!is_last) next = start_reading(reader, inputs[i + 1].scan, options.reads_ahead);
     note(result, inputs[i], read);
-    add(builder, inputs[i], read.cloud);
+    if (is_last) {
+      result.map = finish(builder, inputs[i], read.cloud);
+    } else {
+      add(builder, inputs[i], read.cloud);
+    }
     options.on_scan_done();
   }
-  result.map = builder.finish();
   if (!result.map.frame.epsg) result.map.frame.epsg = result.epsg_of_files;
   return result;
 }

@@ -131,6 +131,28 @@ TEST(MapBuilder, TheCutIntoCallsDoesNotMatter) {
   EXPECT_EQ(test::difference(builder.finish(), map), "");
 }
 
+// Blocks that the builder knows, blocks that it does not, and voxels of both clouds.
+TEST(MapBuilder, TheLastCloudMayComeWithFinish) {
+  const Eigen::AlignedBox3d left(Eigen::Vector3d(-14, -3, -0.7), Eigen::Vector3d(1, 1, 0.8));
+  const PointCloud first = test::random_cloud(30'000, left, 11);
+  const PointCloud last = test::random_cloud(30'000, kBlocks, 12);
+  const Eigen::Isometry3d pose(Eigen::Translation3d(0.3, -0.2, 0.1));
+  MapBuilder one_by_one(test::anchored({0, 0, 0}));
+  one_by_one.add(first);
+  one_by_one.add(last, pose);
+  const VoxelMap map = one_by_one.finish();
+
+  MapBuilder at_once(test::anchored({0, 0, 0}));
+  at_once.add(first);
+  EXPECT_EQ(test::difference(at_once.finish(last, pose), map), "");
+  EXPECT_EQ(at_once.num_points(), 0U);
+  at_once.add(last, pose);
+  EXPECT_EQ(test::difference(at_once.finish(first), map), "");
+  at_once.add(first);
+  at_once.add(last, pose);
+  EXPECT_EQ(test::difference(at_once.finish(PointCloud()), map), "");
+}
+
 class MapBuilderThreads : public testing::TestWithParam<int> {};
 
 TEST_P(MapBuilderThreads, TheNumberOfThreadsDoesNotMatter) {

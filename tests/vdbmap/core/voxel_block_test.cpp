@@ -76,10 +76,10 @@ TEST(VoxelBlock, AKeyNamesTheLeafAndThePlaceInIt) {
 
 TEST(VoxelBlock, LeavesHoldTheVoxelsOfTheBlock) {
   std::vector<VoxelIndex> voxels = in_key_order(test::random_voxels(2000, -128, -1, 5));
-  BlockSums sums;
-  for (const VoxelIndex& voxel : voxels) sums.push_back({key_in_block(voxel), {}});
+  BlockLeaves leaves(block_of_voxel(voxels.front()));
+  for (const VoxelIndex& voxel : voxels) leaves.add(key_in_block(voxel));
   std::vector<VoxelIndex> found;
-  for (const auto& leaf : leaves_of_block(block_of_voxel(voxels.front()), sums)) {
+  for (const auto& leaf : leaves.take()) {
     for (auto it = leaf->cbeginValueOn(); it; ++it) found.push_back(it.getCoord());
   }
   EXPECT_EQ(found, voxels);

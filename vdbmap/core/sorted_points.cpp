@@ -1,13 +1,15 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "vdbmap/core/point_fold.h"
+#include "vdbmap/core/sorted_points.h"
 
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <memory>
 #include <sstream>
 #include <stdexcept>
 #include <unordered_map>
+#include <utility>
+
+#include <tbb/enumerable_thread_specific.h>
 
 #include "vdbmap/core/parallel.h"
 #include "vdbmap/core/srgb.h"
@@ -17,12 +19,9 @@ namespace {
 
 constexpr std::size_t kRangeSize = 1 << 14;  // points that one task numbers and scatters
 
-// A point on its way through the sort.
-struct KeyedPoint {
-  KeyInBlock key;
-  std::uint32_t source;                 // index in the cloud, from `begin`
-  std::array<std::int16_t, 3> quantum;  // position from the voxel's centre
-};
+// Number of a block within a range, which has no more blocks than points.
+using BlockInRange = std::uint16_t;
+static_assert(kRangeSize <= std::size_t{1} << 16);
 
 // Where the points of one range go: its blocks in order of appearance, and how many points each gets.
 struct RangeBlocks {
@@ -69,7 +68,7 @@ KeyedPoint keyed_point(const Eigen::Array3d& scaled, std::uint32_t source) {
 
 // Numbers the blocks of one range; `block_in_range` receives the number of each point's block.
 RangeBlocks number_blocks(std::span<const Eigen::Vector3d> points, const Scaler& scale, double voxels_per_metre,
-                          std::uint32_t* block_in_range) {
+                          BlockInRange* block_in_range) {
   RangeBlocks range;
   std::unordered_map<std::uint64_t, std::uint32_t> numbers;
   auto last_block = BlockKey{~std::uint64_t{0}};
@@ -91,7 +90,7 @@ RangeBlocks number_blocks(std::span<const Eigen::Vector3d> points, const Scaler&
       }
     }
     ++range.counts[last_number];
-    *block_in_range++ = last_number;
+    *block_in_range++ = static_cast<BlockInRange>(last_number);
   }
   return range;
 }
@@ -144,22 +143,28 @@ void sort_by_digit(std::span<const KeyedPoint> from, KeyedPoint* to, int shift, 
   for (const KeyedPoint& point : from) to[place[point.key >> shift & mask]++] = point;
 }
 
-void sort_by_key(std::span<KeyedPoint> points) {
+// `scratch` has room for as many points.
+void sort_by_key(std::span<KeyedPoint> points, LargeVector<KeyedPoint>& scratch) {
   constexpr std::size_t kFewPoints = 512;
   if (points.size() < kFewPoints) {
     std::sort(points.begin(), points.end(), [](const auto& a, const auto& b) { return a.key < b.key; });
     return;
   }
-  const auto scratch = std::make_unique_for_overwrite<KeyedPoint[]>(points.size());
-  sort_by_digit(points, scratch.get(), 0, 11);
-  sort_by_digit({scratch.get(), points.size()}, points.data(), 11, 10);
+  if (scratch.size() < points.size()) scratch.resize(points.size());
+  sort_by_digit(points, scratch.data(), 0, 11);
+  sort_by_digit({scratch.data(), points.size()}, points.data(), 11, 10);
+}
+
+std::size_t count_voxels(std::span<const KeyedPoint> points) {
+  std::size_t count = points.empty() ? 0 : 1;
+  for (std::size_t i = 1; i < points.size(); ++i) count += points[i].key != points[i - 1].key ? 1 : 0;
+  return count;
 }
 
 void add_point(VoxelSums& sums, const KeyedPoint& point) {
   const std::int64_t x = point.quantum[0];
   const std::int64_t y = point.quantum[1];
   const std::int64_t z = point.quantum[2];
-  ++sums.count;
   sums.position[0] += x;
   sums.position[1] += y;
   sums.position[2] += z;
@@ -180,36 +185,16 @@ void add_intensity(VoxelSums& sums, double intensity) {
 }
 
 void add_color(VoxelSums& sums, const Rgb16& color, std::span<const std::uint16_t> linear) {
-  ++sums.num_colored;
   sums.color[0] += linear[color.r];
   sums.color[1] += linear[color.g];
   sums.color[2] += linear[color.b];
 }
 
-BlockSums fold_block(std::span<KeyedPoint> points, const PointCloud& cloud, std::size_t begin) {
-  sort_by_key(points);
-  std::size_t num_voxels = 0;
-  for (std::size_t i = 0; i < points.size(); ++i) num_voxels += i == 0 || points[i].key != points[i - 1].key;
-
-  const std::span<const std::uint16_t> linear = linear_from_srgb_table();
-  const bool has_color = !cloud.colors.empty();
-  const bool has_intensity = !cloud.intensities.empty();
-  BlockSums voxels;
-  voxels.reserve(num_voxels);
-  KeyedSums* voxel = nullptr;
-  for (const KeyedPoint& point : points) {
-    if (!voxel || voxel->key != point.key) voxel = &voxels.emplace_back(KeyedSums{point.key, {}});
-    add_point(voxel->sums, point);
-    if (has_color) add_color(voxel->sums, cloud.colors[begin + point.source], linear);
-    if (has_intensity) add_intensity(voxel->sums, cloud.intensities[begin + point.source]);
-  }
-  return voxels;
-}
-
 }  // namespace
 
-std::vector<FoldedBlock> fold_points(const PointCloud& cloud, std::size_t begin, std::size_t end,
-                                     const Eigen::Isometry3d& local_from_cloud, double voxels_per_metre) {
+SortedPoints::SortedPoints(const PointCloud& cloud, std::size_t begin, std::size_t end,
+                           const Eigen::Isometry3d& local_from_cloud, double voxels_per_metre)
+    : cloud_(cloud), begin_(begin), points_(end - begin) {
   const std::span points = std::span(cloud.positions).subspan(begin, end - begin);
   const Scaler scale(local_from_cloud, voxels_per_metre);
   const auto range_of = [&](std::size_t i) {
@@ -217,29 +202,57 @@ std::vector<FoldedBlock> fold_points(const PointCloud& cloud, std::size_t begin,
   };
 
   std::vector<RangeBlocks> ranges((points.size() + kRangeSize - 1) / kRangeSize);
-  const auto block_in_range = std::make_unique_for_overwrite<std::uint32_t[]>(points.size());
+  LargeVector<BlockInRange> block_in_range(points.size());
   parallel_for(ranges.size(), [&](std::size_t i) {
-    ranges[i] = number_blocks(range_of(i), scale, voxels_per_metre, block_in_range.get() + i * kRangeSize);
+    ranges[i] = number_blocks(range_of(i), scale, voxels_per_metre, block_in_range.data() + i * kRangeSize);
   });
-  const BlockLayout layout = lay_out_blocks(ranges);
+  BlockLayout layout = lay_out_blocks(ranges);
+  blocks_ = std::move(layout.blocks);
+  first_point_ = std::move(layout.first_point);
 
-  const auto sorted = std::make_unique_for_overwrite<KeyedPoint[]>(points.size());
   parallel_for(ranges.size(), [&](std::size_t i) {
     std::size_t source = i * kRangeSize;
     for (const Eigen::Vector3d& point : range_of(i)) {
-      sorted[ranges[i].targets[block_in_range[source]]++] =
+      points_[ranges[i].targets[block_in_range[source]]++] =
           keyed_point(scale(point), static_cast<std::uint32_t>(source));
       ++source;
     }
   });
+  sort_voxels();
+}
 
-  std::vector<FoldedBlock> folded(layout.blocks.size());
-  parallel_for(folded.size(), [&](std::size_t i) {
-    const std::size_t first = layout.first_point[i];
-    const std::span block_points(sorted.get() + first, layout.first_point[i + 1] - first);
-    folded[i] = {layout.blocks[i], fold_block(block_points, cloud, begin)};
+void SortedPoints::sort_voxels() {
+  num_voxels_.resize(num_blocks());
+  tbb::enumerable_thread_specific<LargeVector<KeyedPoint>> scratch;
+  parallel_for(num_blocks(), [&](std::size_t i) {
+    const std::span points = std::span(points_).subspan(first_point_[i], first_point_[i + 1] - first_point_[i]);
+    sort_by_key(points, scratch.local());
+    num_voxels_[i] = count_voxels(points);
   });
-  return folded;
+}
+
+VoxelSums SortedPoints::sums_of(std::span<const KeyedPoint> points) const {
+  VoxelSums sums;
+  sums.count = static_cast<std::int64_t>(points.size());
+  for (const KeyedPoint& point : points) add_point(sums, point);
+  if (!cloud_.colors.empty()) {
+    const std::span<const std::uint16_t> linear = linear_from_srgb_table();
+    sums.num_colored = sums.count;
+    for (const KeyedPoint& point : points) add_color(sums, cloud_.colors[begin_ + point.source], linear);
+  }
+  if (!cloud_.intensities.empty()) {
+    for (const KeyedPoint& point : points) add_intensity(sums, cloud_.intensities[begin_ + point.source]);
+  }
+  return sums;
+}
+
+BlockSums SortedPoints::fold(std::size_t block) const {
+  BlockSums voxels;
+  voxels.reserve(num_voxels(block));
+  for_each_voxel(block, [&](KeyInBlock key, std::span<const KeyedPoint> points) {
+    voxels.push_back({key, sums_of(points)});
+  });
+  return voxels;
 }
 
 }  // namespace vdbmap

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "vdbmap/core/point_fold.h"
+#include "vdbmap/core/sorted_points.h"
 
 #include <algorithm>
 
@@ -13,8 +13,19 @@ namespace {
 
 const Eigen::AlignedBox3d kAcrossBlocks(Eigen::Vector3d(-15, -2, -1), Eigen::Vector3d(14, 2, 1));
 
+struct FoldedBlock {
+  BlockKey block;
+  BlockSums voxels;
+};
+
 std::vector<FoldedBlock> folded(const PointCloud& cloud, std::size_t begin, std::size_t end) {
-  return fold_points(cloud, begin, end, Eigen::Isometry3d::Identity(), 10);
+  const SortedPoints points(cloud, begin, end, Eigen::Isometry3d::Identity(), 10);
+  std::vector<FoldedBlock> blocks;
+  for (std::size_t i = 0; i < points.num_blocks(); ++i) {
+    blocks.push_back({points.block(i), points.fold(i)});
+    EXPECT_EQ(blocks.back().voxels.size(), points.num_voxels(i));
+  }
+  return blocks;
 }
 
 VoxelSums total(const std::vector<FoldedBlock>& blocks) {
@@ -25,7 +36,7 @@ VoxelSums total(const std::vector<FoldedBlock>& blocks) {
   return sum;
 }
 
-TEST(PointFold, AnyPartOfACloudFoldsLikeACloudOfItsOwn) {
+TEST(SortedPoints, AnyPartOfACloudIsLikeACloudOfItsOwn) {
   const PointCloud cloud = test::random_cloud(60'000, kAcrossBlocks, 1);  // several tasks of 16,384 points
   for (const auto& [begin, end] :
        std::vector<std::pair<std::size_t, std::size_t>>{{0, 1}, {7, 20'000}, {20'000, 60'000}}) {
@@ -45,7 +56,7 @@ TEST(PointFold, AnyPartOfACloudFoldsLikeACloudOfItsOwn) {
   }
 }
 
-TEST(PointFold, EveryPointIsCountedOnceInItsVoxel) {
+TEST(SortedPoints, EveryPointIsCountedOnceInItsVoxel) {
   // Up to some thousand points a block: both ways of sorting.
   for (const std::size_t count : {10UL, 511UL, 512UL, 50'000UL}) {
     const PointCloud cloud = test::random_cloud(count, kAcrossBlocks, 2);
@@ -58,7 +69,7 @@ TEST(PointFold, EveryPointIsCountedOnceInItsVoxel) {
   }
 }
 
-TEST(PointFold, BlocksAndVoxelsComeSortedAndOnce) {
+TEST(SortedPoints, BlocksAndVoxelsComeSortedAndOnce) {
   const std::vector<FoldedBlock> blocks = folded(test::random_cloud(50'000, kAcrossBlocks, 3), 0, 50'000);
   ASSERT_GT(blocks.size(), 3U);
   for (std::size_t i = 1; i < blocks.size(); ++i) EXPECT_LT(blocks[i - 1].block, blocks[i].block);

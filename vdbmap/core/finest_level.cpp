@@ -1,0 +1,138 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "vdbmap/core/finest_level.h"
+
+#include <cstddef>
+#include <iterator>
+#include <memory>
+#include <numeric>
+#include <utility>
+#include <vector>
+
+#include "vdbmap/core/parallel.h"
+
+namespace vdbmap {
+namespace {
+
+// Adds some blocks of the points to the sums, blocks in parallel.
+void add_blocks(VoxelBlocks& blocks, const SortedPoints& points, const std::vector<std::size_t>& numbers) {
+  std::vector<BlockSums*> targets;
+  for (const std::size_t i : numbers) targets.push_back(&blocks[points.block(i)]);
+  parallel_for(numbers.size(),
+               [&](std::size_t i) { *targets[i] = merge_blocks(std::move(*targets[i]), points.fold(numbers[i])); });
+}
+
+// What a block of the level is made of: sums, or points.
+struct BlockSource {
+  BlockKey block;
+  std::size_t first_record;
+  BlockSums* sums;
+  std::size_t in_points;  // number of the block there, if there are no sums
+};
+
+// Makes the level of its blocks, all at the same time.
+class LevelMaker {
+ public:
+  LevelMaker(VoxelBlocks blocks, const SortedPoints* points, const FinestLevelOptions& options)
+      : blocks_(std::move(blocks)), points_(points), options_(options) {}
+
+  VoxelLevel make() {
+    if (points_) add_to_known_blocks();
+    list_sources();
+    allocate();
+    std::vector<std::vector<std::unique_ptr<VoxelLeaf>>> leaves_of_source(sources_.size());
+    parallel_for(sources_.size(), [&](std::size_t i) { leaves_of_source[i] = make_block(sources_[i]); });
+
+    std::vector<std::unique_ptr<VoxelLeaf>> leaves;
+    for (auto& part : leaves_of_source) std::move(part.begin(), part.end(), std::back_inserter(leaves));
+    return {options_.voxel_size, std::move(leaves), std::move(records_), std::move(channels_)};
+  }
+
+ private:
+  void add_to_known_blocks() {
+    std::vector<std::size_t> known;
+    for (std::size_t i = 0; i < points_->num_blocks(); ++i) {
+      if (blocks_.contains(points_->block(i))) known.push_back(i);
+    }
+    add_blocks(blocks_, *points_, known);
+  }
+
+  // Both lists are sorted; a block of both has its points among its sums by now.
+  void list_sources() {
+    std::size_t next = 0;
+    for (auto& [block, sums] : blocks_) {
+      list_points_before(block, next);
+      if (points_ && next < points_->num_blocks() && points_->block(next) == block) ++next;
+      add_source({block, num_records_, &sums, 0}, sums.size());
+    }
+    if (points_) {
+      for (; next < points_->num_blocks(); ++next) add_points_source(next);
+    }
+  }
+
+  void list_points_before(BlockKey block, std::size_t& next) {
+    for (; points_ && next < points_->num_blocks() && points_->block(next) < block; ++next) add_points_source(next);
+  }
+
+  void add_points_source(std::size_t number) {
+    add_source({points_->block(number), num_records_, nullptr, number}, points_->num_voxels(number));
+  }
+
+  void add_source(const BlockSource& source, std::size_t num_voxels) {
+    sources_.push_back(source);
+    num_records_ += num_voxels;
+  }
+
+  void allocate() {
+    records_.resize(num_records_);
+    if (options_.has_intensity) channels_.intensities.resize(num_records_);
+    if (options_.epoch) {
+      channels_.first_epochs.assign(num_records_, *options_.epoch);
+      channels_.last_epochs = channels_.first_epochs;
+    }
+  }
+
+  std::vector<std::unique_ptr<VoxelLeaf>> make_block(const BlockSource& source) {
+    BlockLeaves leaves(source.block);
+    std::size_t record = source.first_record;
+    if (source.sums) {
+      const BlockSums voxels = std::move(*source.sums);  // freed as soon as they are converted
+      for (const KeyedSums& voxel : voxels) {
+        leaves.add(voxel.key);
+        set_record(record++, voxel.sums);
+      }
+    } else {
+      points_->for_each_voxel(source.in_points, [&](KeyInBlock key, std::span<const KeyedPoint> points) {
+        leaves.add(key);
+        set_record(record++, points_->sums_of(points));
+      });
+    }
+    return leaves.take();
+  }
+
+  void set_record(std::size_t number, const VoxelSums& sums) {
+    records_[number] = record_of(sums, options_.voxel_size);
+    if (options_.has_intensity) channels_.intensities[number] = intensity_of(sums);
+  }
+
+  VoxelBlocks blocks_;
+  const SortedPoints* points_;
+  const FinestLevelOptions& options_;
+  std::vector<BlockSource> sources_;
+  std::size_t num_records_ = 0;
+  LargeVector<VoxelRecord> records_;
+  VoxelChannels channels_;
+};
+
+}  // namespace
+
+void add_points(VoxelBlocks& blocks, const SortedPoints& points) {
+  std::vector<std::size_t> all(points.num_blocks());
+  std::iota(all.begin(), all.end(), std::size_t{0});
+  add_blocks(blocks, points, all);
+}
+
+VoxelLevel make_finest_level(VoxelBlocks blocks, const SortedPoints* last_points, const FinestLevelOptions& options) {
+  return LevelMaker(std::move(blocks), last_points, options).make();
+}
+
+}  // namespace vdbmap
