@@ -54,11 +54,12 @@ draw_pictures() {
 demonstrate_on_simulated_street() {
   local street=demo/street
   vdbmap simulate "$street" --seed 1
-  vdbmap build "$street/epoch0/cloud.las" -o demo/map.vdb
+  vdbmap build "$street/epoch0/cloud.las" --labels "$street/epoch0/labels/cloud.label" -o demo/map.vdb
   look_into_map
   vdbmap localize demo/map.vdb "$street/epoch1/scans" -o demo/poses.txt --report demo/report.json
   vdbmap evaluate demo/poses.txt "$street/epoch1/poses.txt" --plot demo/evaluation.png
   draw_pictures "$street/epoch1/poses.txt"
+  vdbmap render demo/map.vdb -o demo/classes.png --view perspective --color-by label
 }
 
 demonstrate_on_real_scans() {

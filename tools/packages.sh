@@ -9,7 +9,7 @@ build_packages=(
   # Pictures and their letters; the CMake config of OpenImageIO wants its tools too.
   fonts-dejavu-core libopenimageio-dev openimageio-tools
 )
-test_packages=(libbenchmark-dev libgmock-dev libgtest-dev)
+test_packages=(libbenchmark-dev libgmock-dev libgtest-dev libpng-dev)
 benchmark_packages=(jq time)
 ci_packages=(blender clang-format python3-numpy python3-openvdb)
 

@@ -4,20 +4,21 @@
 #include <stdexcept>
 #include <vector>
 
-#include <OpenImageIO/imageio.h>
+#include <png.h>
 
 namespace vdbmap::test {
 
 Image read_picture(const std::filesystem::path& path) {
-  const auto input = OIIO::ImageInput::open(path.string());
-  if (!input) throw std::runtime_error(OIIO::geterror());
-  const OIIO::ImageSpec& spec = input->spec();
-  if (spec.nchannels != 3) throw std::runtime_error("expected three channels");
-  std::vector<Rgb8> pixels(spec.image_pixels());
-  if (!input->read_image(0, 0, 0, 3, OIIO::TypeDesc::UINT8, pixels.data())) throw std::runtime_error(input->geterror());
-  Image image(spec.width, spec.height);
-  for (int y = 0; y < spec.height; ++y) {
-    for (int x = 0; x < spec.width; ++x) image.at(x, y) = pixels[static_cast<std::size_t>(y * spec.width + x)];
+  png_image file{};
+  file.version = PNG_IMAGE_VERSION;
+  if (!png_image_begin_read_from_file(&file, path.c_str())) throw std::runtime_error(file.message);
+  if (file.format != PNG_FORMAT_RGB) throw std::runtime_error("expected three channels of 8 bits");
+  static_assert(sizeof(Rgb8) == 3);
+  std::vector<Rgb8> pixels(static_cast<std::size_t>(file.width) * file.height);
+  if (!png_image_finish_read(&file, nullptr, pixels.data(), 0, nullptr)) throw std::runtime_error(file.message);
+  Image image(static_cast<int>(file.width), static_cast<int>(file.height));
+  for (int y = 0; y < image.height(); ++y) {
+    for (int x = 0; x < image.width(); ++x) image.at(x, y) = pixels[static_cast<std::size_t>(y * image.width() + x)];
   }
   return image;
 }

@@ -10,7 +10,7 @@
 
 namespace vdbmap::test {
 
-/// A picture as another program sees it: read by OpenImageIO.
+/// A picture as another program sees it: read by libpng. Throws std::runtime_error.
 Image read_picture(const std::filesystem::path& path);
 
 /// How many pixels of the box (all: of the picture) have just that colour.

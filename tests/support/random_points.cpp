@@ -15,6 +15,7 @@ PointCloud selected(const PointCloud& cloud, const std::vector<std::size_t>& num
     selection.positions.push_back(cloud.positions[i]);
     if (!cloud.colors.empty()) selection.colors.push_back(cloud.colors[i]);
     if (!cloud.intensities.empty()) selection.intensities.push_back(cloud.intensities[i]);
+    if (!cloud.labels.empty()) selection.labels.push_back(cloud.labels[i]);
   }
   return selection;
 }
@@ -57,6 +58,7 @@ PointCloud random_cloud(std::size_t count, const Eigen::AlignedBox3d& box, unsig
     const auto channel = [&] { return static_cast<std::uint16_t>(code(random)); };
     cloud.colors.push_back({channel(), channel(), channel()});
     cloud.intensities.push_back(static_cast<float>(code(random)) / 256.0f);
+    cloud.labels.push_back(static_cast<std::uint16_t>(code(random) % 4));  // one of them kNoLabel
   }
   return cloud;
 }

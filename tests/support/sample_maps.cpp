@@ -24,6 +24,7 @@ PointCloud sample_cloud() {
       const auto channel = [&] { return static_cast<std::uint16_t>(code(random)); };
       cloud.colors.push_back({channel(), channel(), channel()});
       cloud.intensities.push_back(static_cast<float>(code(random)) / 256.0f);
+      cloud.labels.push_back(static_cast<std::uint16_t>(code(random) % 3 * 10));
     }
   }
   return cloud;
@@ -43,10 +44,11 @@ std::string difference(const VoxelLevel& a, const VoxelLevel& b) {
   if (a.voxel_size() != b.voxel_size()) return "voxel sizes";
   if (!a.tree().hasSameTopology(b.tree())) return "topology";
   if (!same_bytes(a.records(), b.records())) return "records";
-  if (!same_bytes(a.channels().intensities, b.channels().intensities)) return "intensities";
-  if (!same_bytes(a.channels().first_epochs, b.channels().first_epochs)) return "first epochs";
-  if (!same_bytes(a.channels().last_epochs, b.channels().last_epochs)) return "last epochs";
-  return "";
+  std::string found;
+  for_each_channel([&](const char* name, auto channel) {
+    if (found.empty() && !same_bytes(a.channels().*channel, b.channels().*channel)) found = name;
+  });
+  return found;
 }
 
 }  // namespace
@@ -74,19 +76,23 @@ VoxelMap sample_map() {
   options.anchor = kAnchor;
   options.epsg = 25832;
   options.epoch = 3;
-  return build_map(sample_cloud(), options);
+  VoxelMap map = build_map(sample_cloud(), options);
+  map.label_scheme = LabelScheme::kSemanticKitti;
+  return map;
 }
 
 VoxelMap sample_map_without_attributes() {
   PointCloud cloud = sample_cloud();
   cloud.colors.clear();
   cloud.intensities.clear();
+  cloud.labels.clear();
   return build_map(cloud);
 }
 
 std::string difference(const VoxelMap& a, const VoxelMap& b) {
   if (!(a.frame == b.frame)) return "frames";
   if (a.has_color != b.has_color) return "has_color";
+  if (a.label_scheme != b.label_scheme) return "label schemes";
   if (a.levels.size() != b.levels.size()) return "number of levels";
   for (std::size_t i = 0; i < a.levels.size(); ++i) {
     const std::string found = difference(a.levels[i], b.levels[i]);

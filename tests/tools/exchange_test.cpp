@@ -250,7 +250,7 @@ TEST_F(PythonOpenvdb, ReadsEveryChannelExactly) {
   const VoxelMap map = test::sample_map();
   export_channels(folder_ / "channels.vdb", map, {.integers_as_float = true});
   auto grids = read(folder_ / "channels.vdb");
-  ASSERT_EQ(grids.size(), 22u);
+  ASSERT_EQ(grids.size(), 24u);
   for (const VoxelLevel& level : map.levels) {
     const std::string suffix = &level == &map.finest() ? "" : "_1m";
     const auto expect = [&](const std::string& name, const auto& value_of) {
@@ -267,6 +267,7 @@ TEST_F(PythonOpenvdb, ReadsEveryChannelExactly) {
     expect("color", [&](std::size_t i) { return values(color_value_of(record(i))); });
     expect("planarity", [&](std::size_t i) { return number(planarity_value_of(record(i))); });
     expect("intensity", [&](std::size_t i) { return number(channels.intensities[i]); });
+    expect("label", [&](std::size_t i) { return number(channels.labels[i]); });
     expect("first_epoch", [&](std::size_t i) { return number(channels.first_epochs[i]); });
     expect("last_epoch", [&](std::size_t i) { return number(channels.last_epochs[i]); });
   }

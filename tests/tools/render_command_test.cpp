@@ -60,6 +60,20 @@ TEST_F(Render, DrawsTrajectoriesAndPointsOverTheMap) {
   EXPECT_GT(test::count_pixels(test::read_picture(path("plan.png")), rgb8(0xe3241f)), 100U);
 }
 
+TEST_F(Render, FilesOfOneNameAreToldApartInTheLegend) {
+  const std::string file = map();
+  std::filesystem::create_directories(folder_ / "a_long_name_of_a_folder");
+  std::filesystem::copy_file(poses(), folder_ / "a_long_name_of_a_folder" / "poses.txt");
+  const auto picture = [&](const std::string& second) {
+    const CommandResult result = vdbmap({"render", file, "-o", path("plan.png"), "--view", "plan", "--size", "640x400",
+                                         "--trajectory", path("poses.txt"), path(second)});
+    EXPECT_EQ(result.exit_code, 0) << result.err;
+    return test::read_raw(path("plan.png"));
+  };
+  std::filesystem::copy_file(path("poses.txt"), path("other.txt"));
+  EXPECT_NE(picture("a_long_name_of_a_folder/poses.txt"), picture("other.txt"));
+}
+
 TEST_F(Render, AnyNumberOfThreadsWritesTheSameBytes) {
   const std::string file = map();
   for (const std::string threads : {"1", "3"}) {

@@ -39,6 +39,8 @@ struct BuildCommandOptions {
   std::vector<double> anchor;
   std::optional<int> epsg;
   std::optional<std::int32_t> epoch;
+  std::optional<std::filesystem::path> labels;
+  std::string label_scheme;
   MapOutput output;
 };
 
@@ -62,6 +64,18 @@ void add_map_options(CLI::App& app, BuildCommandOptions& options) {
       ->type_name("N");
 }
 
+void add_label_options(CLI::App& app, BuildCommandOptions& options) {
+  app.add_option("--labels", options.labels,
+                 "Classes of the points: SemanticKITTI's .label file of the one cloud, or a folder with NAME.label for "
+                 "each scan NAME (default: those that the point files hold)")
+      ->type_name("PATH");
+  app.add_option("--label-scheme", options.label_scheme,
+                 "Whose numbers the classes are: asprs or semantickitti (default: asprs of LAS, semantickitti of "
+                 "--labels, else unknown)")
+      ->check(CLI::IsMember({text_of(LabelScheme::kAsprs), text_of(LabelScheme::kSemanticKitti)}).description(""))
+      ->type_name("NAME");
+}
+
 void add_options(CLI::App& app, BuildCommandOptions& options) {
   app.add_option("INPUTS", options.inputs,
                  "Point files, and folders of them: PLY, PCD, LAS, KITTI .bin, XYZ/CSV, .pcap")
@@ -72,6 +86,7 @@ void add_options(CLI::App& app, BuildCommandOptions& options) {
       ->type_name("FILE");
   add_scan_selection(app, options.selection);
   add_map_options(app, options);
+  add_label_options(app, options);
   add_map_output(app, options.output);
 }
 
@@ -107,10 +122,11 @@ BuildOptions build_options(const BuildCommandOptions& options) {
 }
 
 MapFromFiles build(const std::vector<MapInput>& inputs, const BuildOptions& build_options,
-                   const CommonOptions& common) {
+                   const std::string& label_scheme, const CommonOptions& common) {
   Progress progress("building from scans", inputs.size(), common);
   MapFromFilesOptions options;
   options.build = build_options;
+  options.label_scheme = label_scheme_of(label_scheme);
   options.reads_ahead = common.num_threads != 1;
   options.on_scan_done = [&progress] { progress.advance(); };
   return build_map_from_files(inputs, options);
@@ -162,10 +178,12 @@ ExitCode run(const BuildCommandOptions& options, const CommonOptions& common) {
   const std::vector<std::filesystem::path> files = list_point_files(options.inputs);
   std::vector<std::filesystem::path> read_files = files;
   if (options.poses) read_files.push_back(*options.poses);
+  if (options.labels) read_files.push_back(*options.labels);
   check_output(options.output.file, read_files);
-  const std::vector<MapInput> inputs = choose_inputs(list_scans(files), options.selection, options.poses);
+  std::vector<MapInput> inputs = choose_inputs(list_scans(files), options.selection, options.poses);
+  if (options.labels) add_label_files(inputs, *options.labels);
 
-  const MapFromFiles built = build(inputs, checked_options, common);
+  const MapFromFiles built = build(inputs, checked_options, options.label_scheme, common);
   warn(built);
   save_map(options.output.file, built.map, options.output.save);
   const std::chrono::duration<double> elapsed = std::chrono::steady_clock::now() - start;
@@ -180,6 +198,7 @@ Command build_command() {
       "build", "Make a map of point clouds, or of scans with a pose each",
       "vdbmap build street.las -o map.vdb\n"
       "vdbmap build velodyne/ --poses poses.txt --every 2 -o map.vdb\n"
+      "vdbmap build sequences/00/velodyne --poses poses.txt --labels sequences/00/labels -o map.vdb\n"
       "vdbmap build a.ply b.ply --levels 0.05,0.5 --epsg 25832 --epoch 3 -o map.vdb",
       add_options, run);
 }

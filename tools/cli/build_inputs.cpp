@@ -3,6 +3,7 @@
 
 #include <stdexcept>
 #include <string>
+#include <system_error>
 
 #include <spdlog/fmt/fmt.h>
 #include <spdlog/spdlog.h>
@@ -48,6 +49,24 @@ std::vector<MapInput> choose_inputs(const std::vector<ScanPlace>& scans, const S
   std::vector<MapInput> inputs;
   for (const std::size_t i : chosen) inputs.push_back({scans[i], std::nullopt});
   return inputs;
+}
+
+void add_label_files(std::vector<MapInput>& inputs, const std::filesystem::path& labels) {
+  const bool is_folder = std::filesystem::is_directory(labels);
+  if (!is_folder && inputs.size() > 1) {
+    throw std::invalid_argument(
+        fmt::format("--labels names a file, but there are {} scans: expected a folder with a "
+                    ".label file for each",
+                    inputs.size()));
+  }
+  for (MapInput& input : inputs) {
+    if (input.scan.turn) throw std::invalid_argument(input.scan.name() + ": no label file can belong to a turn");
+    input.labels = is_folder ? labels / input.scan.file.filename().replace_extension(".label") : labels;
+    std::error_code error;
+    if (!std::filesystem::exists(*input.labels, error)) {
+      throw IoError::malformed(*input.labels, "is missing, the labels of " + input.scan.file.string());
+    }
+  }
 }
 
 }  // namespace vdbmap::cli

@@ -2,8 +2,13 @@
 #include "tools/cli/map_summary.h"
 
 #include <algorithm>
+#include <cstddef>
 #include <cstdint>
+#include <functional>
+#include <map>
 #include <optional>
+#include <string>
+#include <utility>
 #include <vector>
 
 #include <nlohmann/json.hpp>
@@ -24,13 +29,32 @@ std::optional<EpochRange> epochs_of(const VoxelChannels& channels) {
   return EpochRange{*std::ranges::min_element(channels.first_epochs), *std::ranges::max_element(channels.last_epochs)};
 }
 
+// Voxels of each class, the largest class first.
+std::vector<std::pair<std::int32_t, std::size_t>> classes_of(const VoxelChannels& channels) {
+  std::map<std::int32_t, std::size_t> counts;
+  for (const std::int32_t label : channels.labels) ++counts[label];
+  std::vector<std::pair<std::int32_t, std::size_t>> classes(counts.begin(), counts.end());
+  std::ranges::stable_sort(classes, std::ranges::greater(), &std::pair<std::int32_t, std::size_t>::second);
+  return classes;
+}
+
+// "semantickitti: road 40.1 %, car 3.0 %".
+std::string classes_text(const VoxelMap& map) {
+  std::vector<std::string> shares;
+  for (const auto& [label, count] : classes_of(map.finest().channels())) {
+    const double percent = 100 * static_cast<double>(count) / static_cast<double>(map.finest().size());
+    shares.push_back(fmt::format("{} {:.1f} %", label_name(map.label_scheme, label), percent));
+  }
+  return fmt::format("{}: {}", text_of(map.label_scheme), fmt::join(shares, ", "));
+}
+
 std::vector<std::string> attributes_of(const VoxelMap& map) {
   const VoxelChannels& channels = map.finest().channels();
   std::vector<std::string> names = {"mean", "covariance", "count", "normal", "planarity"};
   if (map.has_color) names.emplace_back("color");
-  if (!channels.intensities.empty()) names.emplace_back("intensity");
-  if (!channels.first_epochs.empty()) names.emplace_back("first_epoch");
-  if (!channels.last_epochs.empty()) names.emplace_back("last_epoch");
+  for_each_channel([&](const char* name, auto channel) {
+    if (!(channels.*channel).empty()) names.emplace_back(name);
+  });
   return names;
 }
 
@@ -58,6 +82,15 @@ Json json_of(const std::optional<Value>& value) {
 }
 
 Json json_of(const Eigen::Vector3d& point) { return {point.x(), point.y(), point.z()}; }
+
+Json json_of_classes(const VoxelMap& map) {
+  if (map.finest().channels().labels.empty()) return nullptr;
+  auto classes = Json::array();
+  for (const auto& [label, count] : classes_of(map.finest().channels())) {
+    classes.push_back({{"label", label}, {"name", label_name(map.label_scheme, label)}, {"voxels", count}});
+  }
+  return {{"scheme", text_of(map.label_scheme)}, {"classes", classes}};
+}
 
 Json json_of_levels(const VoxelMap& map) {
   auto levels = Json::array();
@@ -89,6 +122,7 @@ std::string text_of_map(const VoxelMap& map, const std::filesystem::path& file) 
   text += line("EPSG", map.frame.epsg ? std::to_string(*map.frame.epsg) : "unknown");
   text += line("attributes", fmt::format("{}", fmt::join(attributes_of(map), ", ")));
   text += line("colours", map.has_color ? "yes" : "no");
+  if (!map.finest().channels().labels.empty()) text += line("classes", classes_text(map));
   if (const auto epochs = epochs_of(map.finest().channels())) {
     text += line("epochs", fmt::format("{} to {}", epochs->first, epochs->last));
   }
@@ -106,6 +140,7 @@ Json json_of_map(const VoxelMap& map, const std::filesystem::path& file) {
           {"epsg", json_of(map.frame.epsg)},
           {"attributes", attributes_of(map)},
           {"has_color", map.has_color},
+          {"labels", json_of_classes(map)},
           {"epochs", json_of_epochs(epochs_of(map.finest().channels()))},
           {"bytes_per_voxel",
            {{"memory", json_of(per_voxel(memory_bytes(map), map))}, {"file", json_of(per_voxel(file_bytes, map))}}},

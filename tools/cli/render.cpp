@@ -19,6 +19,7 @@
 #include "tools/cli/map_output.h"
 #include "tools/cli/number_list.h"
 #include "tools/cli/output.h"
+#include "tools/cli/short_names.h"
 #include "vdbmap/core/error.h"
 #include "vdbmap/io/point_reader.h"
 #include "vdbmap/io/text.h"
@@ -116,13 +117,13 @@ RenderOptions render_options(const RenderCommandOptions& options) {
 }
 
 RenderOverlays read_overlays(const RenderCommandOptions& options) {
+  std::vector<std::filesystem::path> files = options.trajectories;
+  files.insert(files.end(), options.points.begin(), options.points.end());
+  const std::vector<std::string> names = short_names(files);
   RenderOverlays overlays;
-  for (const auto& file : options.trajectories) {
-    overlays.trajectories.push_back({file.filename().string(), read_trajectory(file)});
-  }
-  for (const auto& file : options.points) {
-    overlays.points.push_back({file.filename().string(), read_points(file).cloud.positions});
-  }
+  auto name = names.begin();
+  for (const auto& file : options.trajectories) overlays.trajectories.push_back({*name++, read_trajectory(file)});
+  for (const auto& file : options.points) overlays.points.push_back({*name++, read_points(file).cloud.positions});
   return overlays;
 }
 

@@ -40,6 +40,7 @@ std::string channels_text(const VoxelInfo& voxel) {
                                        byte_of(voxel.color->b), text_of(*voxel.linear_color, 4)));
   }
   if (voxel.intensity) text += line("intensity", fmt::format("{:.4g}", *voxel.intensity));
+  if (voxel.label) text += line("class", fmt::format("{} ({})", voxel.label_name, *voxel.label));
   if (voxel.first_epoch) text += line("first epoch", std::to_string(*voxel.first_epoch));
   if (voxel.last_epoch) text += line("last epoch", std::to_string(*voxel.last_epoch));
   return text;
@@ -96,6 +97,8 @@ Json json_of(const VoxelInfo& voxel) {
           {"features", json_of(voxel.features)},
           {"color", json_of_color(voxel)},
           {"intensity", json_of(voxel.intensity)},
+          {"label", json_of(voxel.label)},
+          {"label_name", voxel.label ? Json(voxel.label_name) : Json(nullptr)},
           {"first_epoch", json_of(voxel.first_epoch)},
           {"last_epoch", json_of(voxel.last_epoch)}};
 }

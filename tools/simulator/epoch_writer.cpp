@@ -7,13 +7,13 @@
 #include <nlohmann/json.hpp>
 #include <spdlog/fmt/fmt.h>
 
-#include "tools/simulator/label_file.h"
 #include "tools/simulator/lidar.h"
 #include "tools/simulator/mapper.h"
 #include "tools/simulator/street_json.h"
 #include "tools/simulator/truth_files.h"
 #include "vdbmap/core/error.h"
 #include "vdbmap/core/parallel.h"
+#include "vdbmap/io/label_file.h"
 #include "vdbmap/io/las.h"
 #include "vdbmap/io/pcd.h"
 #include "vdbmap/io/trajectory_file.h"

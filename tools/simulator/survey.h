@@ -1,20 +1,15 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #pragma once
 
-#include <cstdint>
 #include <vector>
 
 #include "vdbmap/core/point_cloud.h"
+#include "vdbmap/io/label_file.h"
 
 namespace vdbmap::simulator {
 
 /// What a point was measured on: the numbers of SurfaceClass and of the world's object.
-struct PointTruth {
-  std::uint16_t label;
-  std::uint16_t object;
-
-  bool operator==(const PointTruth&) const = default;
-};
+using PointTruth = PointLabel;
 
 /// Points and the truth of each.
 struct Survey {

@@ -13,20 +13,22 @@
 namespace vdbmap {
 namespace {
 
-// Adds some blocks of the points to the sums, blocks in parallel.
+// Adds some blocks of the points, in parallel.
 void add_blocks(VoxelBlocks& blocks, const SortedPoints& points, const std::vector<std::size_t>& numbers) {
-  std::vector<BlockSums*> targets;
+  std::vector<BlockContent*> targets;
   for (const std::size_t i : numbers) targets.push_back(&blocks[points.block(i)]);
-  parallel_for(numbers.size(),
-               [&](std::size_t i) { *targets[i] = merge_blocks(std::move(*targets[i]), points.fold(numbers[i])); });
+  parallel_for(numbers.size(), [&](std::size_t i) {
+    targets[i]->sums = merge_blocks(std::move(targets[i]->sums), points.fold(numbers[i]));
+    targets[i]->votes = merge_votes(targets[i]->votes, points.votes(numbers[i]));
+  });
 }
 
-// What a block of the level is made of: sums, or points.
+// What a block of the level is made of: what is known, or points.
 struct BlockSource {
   BlockKey block;
   std::size_t first_record;
-  BlockSums* sums;
-  std::size_t in_points;  // number of the block there, if there are no sums
+  BlockContent* content;
+  std::size_t in_points;  // number of the block there, if there is no content
 };
 
 // Makes the level of its blocks, all at the same time.
@@ -56,13 +58,13 @@ class LevelMaker {
     add_blocks(blocks_, *points_, known);
   }
 
-  // Both lists are sorted; a block of both has its points among its sums by now.
+  // Both lists are sorted; a block of both has got its points by now.
   void list_sources() {
     std::size_t next = 0;
-    for (auto& [block, sums] : blocks_) {
+    for (auto& [block, content] : blocks_) {
       list_points_before(block, next);
       if (points_ && next < points_->num_blocks() && points_->block(next) == block) ++next;
-      add_source({block, num_records_, &sums, 0}, sums.size());
+      add_source({block, num_records_, &content, 0}, content.sums.size());
     }
     if (points_) {
       for (; next < points_->num_blocks(); ++next) add_points_source(next);
@@ -85,6 +87,7 @@ class LevelMaker {
   void allocate() {
     records_.resize(num_records_);
     if (options_.has_intensity) channels_.intensities.resize(num_records_);
+    if (options_.has_labels) channels_.labels.resize(num_records_);
     if (options_.epoch) {
       channels_.first_epochs.assign(num_records_, *options_.epoch);
       channels_.last_epochs = channels_.first_epochs;
@@ -92,27 +95,50 @@ class LevelMaker {
   }
 
   std::vector<std::unique_ptr<VoxelLeaf>> make_block(const BlockSource& source) {
-    BlockLeaves leaves(source.block);
-    std::size_t record = source.first_record;
-    if (source.sums) {
-      const BlockSums voxels = std::move(*source.sums);  // freed as soon as they are converted
-      for (const KeyedSums& voxel : voxels) {
-        leaves.add(voxel.key);
-        set_record(record++, voxel.sums);
-      }
+    VoxelMaker maker(*this, source);
+    if (source.content) {
+      const BlockSums voxels = std::move(source.content->sums);  // freed as soon as they are converted
+      for (const KeyedSums& voxel : voxels) maker.add(voxel.key, voxel.sums);
     } else {
       points_->for_each_voxel(source.in_points, [&](KeyInBlock key, std::span<const KeyedPoint> points) {
-        leaves.add(key);
-        set_record(record++, points_->sums_of(points));
+        maker.add(key, points_->sums_of(points));
       });
     }
-    return leaves.take();
+    return maker.take_leaves();
   }
 
-  void set_record(std::size_t number, const VoxelSums& sums) {
-    records_[number] = record_of(sums, options_.voxel_size);
-    if (options_.has_intensity) channels_.intensities[number] = intensity_of(sums);
-  }
+  // Makes the voxels of one block, which come in the order of their keys.
+  class VoxelMaker {
+   public:
+    VoxelMaker(LevelMaker& level, const BlockSource& source)
+        : level_(level),
+          block_(source.block),
+          record_(source.first_record),
+          leaves_(source.block),
+          votes_(source.content ? std::move(source.content->votes) : level.points_->votes(source.in_points)),
+          election_(votes_) {}
+    VoxelMaker(const VoxelMaker&) = delete;
+    VoxelMaker& operator=(const VoxelMaker&) = delete;
+
+    void add(KeyInBlock key, const VoxelSums& sums) {
+      VoxelChannels& channels = level_.channels_;
+      leaves_.add(key);
+      level_.records_[record_] = record_of(sums, level_.options_.voxel_size);
+      if (!channels.intensities.empty()) channels.intensities[record_] = intensity_of(sums);
+      if (!channels.labels.empty()) channels.labels[record_] = election_.winner(key_of_voxel(block_, key));
+      ++record_;
+    }
+
+    std::vector<std::unique_ptr<VoxelLeaf>> take_leaves() { return leaves_.take(); }
+
+   private:
+    LevelMaker& level_;
+    BlockKey block_;
+    std::size_t record_;
+    BlockLeaves leaves_;
+    std::vector<LabelVotes> votes_;
+    LabelElection election_;  // of votes_
+  };
 
   VoxelBlocks blocks_;
   const SortedPoints* points_;

@@ -4,27 +4,35 @@
 #include <cstdint>
 #include <map>
 #include <optional>
+#include <vector>
 
+#include "vdbmap/core/label_votes.h"
 #include "vdbmap/core/sorted_points.h"
 #include "vdbmap/core/voxel_block.h"
 #include "vdbmap/core/voxel_level.h"
 
 namespace vdbmap {
 
-/// The sums of all voxels, block by block.
-using VoxelBlocks = std::map<BlockKey, BlockSums>;
+/// What is known of the voxels of a block.
+struct BlockContent {
+  BlockSums sums;
+  std::vector<LabelVotes> votes;  ///< sorted
+};
 
-/// Adds points to the sums.
+using VoxelBlocks = std::map<BlockKey, BlockContent>;
+
+/// Adds points.
 void add_points(VoxelBlocks& blocks, const SortedPoints& points);
 
 /// What the finest level is like, beside its voxels.
 struct FinestLevelOptions {
   double voxel_size = 0;  ///< [m]
   bool has_intensity = false;
+  bool has_labels = false;
   std::optional<std::int32_t> epoch;  ///< first and last epoch of every voxel
 };
 
-/// The level of the sums, without normals. The last points, if any, are added on the way: where nothing else is in a
+/// The level of all blocks, without normals. The last points, if any, are added on the way: where nothing else is in a
 /// block of theirs, its records are made straight from them, and no sums (144 bytes a voxel) are stored.
 VoxelLevel make_finest_level(VoxelBlocks blocks, const SortedPoints* last_points, const FinestLevelOptions& options);
 

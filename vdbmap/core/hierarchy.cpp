@@ -5,6 +5,7 @@
 #include <cmath>
 #include <limits>
 
+#include "vdbmap/core/label_votes.h"
 #include "vdbmap/core/normals.h"
 #include "vdbmap/core/parallel.h"
 #include "vdbmap/core/voxel_assembly.h"
@@ -125,12 +126,17 @@ VoxelLevel coarsen(const VoxelLevel& fine, std::int32_t factor) {
   const double voxel_size = factor / voxels_per_metre(fine.voxel_size());
   const std::vector<KeyedParent> parents = fold_parents(gather_all_parents(fine, factor));
 
+  const bool has_labels = !fine.channels().labels.empty();
+  const std::vector<LabelVotes> votes = has_labels ? votes_for_parents(fine, factor) : std::vector<LabelVotes>();
+  LabelElection election(votes);
+
   VoxelAssembly assembly(voxel_size, parents.size());
   for (const KeyedParent& parent : parents) {
     [[maybe_unused]] const bool in_order = assembly.add(parent.voxel, record_of(parent, voxel_size));
     if (!fine.channels().intensities.empty()) {
       assembly.channels().intensities.push_back(static_cast<float>(parent.sums.intensity / parent.sums.count));
     }
+    if (has_labels) assembly.channels().labels.push_back(election.winner(parent.key));
     if (!fine.channels().first_epochs.empty()) assembly.channels().first_epochs.push_back(parent.sums.first_epoch);
     if (!fine.channels().last_epochs.empty()) assembly.channels().last_epochs.push_back(parent.sums.last_epoch);
   }

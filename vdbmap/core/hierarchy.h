@@ -8,8 +8,8 @@
 namespace vdbmap {
 
 /// The level whose voxels are `factor` times as long: count, mean, covariance and colour of each are those of all
-/// points in its children, merged from their moments; normals included. Channels: mean intensity, earliest first epoch,
-/// latest last epoch.
+/// points in its children, merged from their moments; normals included. Channels: mean intensity, the label of the
+/// children with most points, earliest first epoch, latest last epoch.
 VoxelLevel coarsen(const VoxelLevel& fine, std::int32_t factor);
 
 /// Appends the levels of voxel_sizes[1], voxel_sizes[2], ... to a map that has the finest level alone.

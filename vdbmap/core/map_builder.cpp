@@ -26,6 +26,7 @@ struct MapBuilder::State {
   std::size_t num_points = 0;
   bool has_color = false;
   bool has_intensity = false;
+  bool has_labels = false;
 
   void note(const PointCloud& cloud, const Eigen::Isometry3d& map_from_cloud);
   SortedPoints sort(const PointCloud& cloud, std::size_t begin, std::size_t end,
@@ -62,6 +63,7 @@ void MapBuilder::State::note(const PointCloud& cloud, const Eigen::Isometry3d& m
   num_points += cloud.size();
   has_color |= !cloud.colors.empty();
   has_intensity |= !cloud.intensities.empty();
+  has_labels |= !cloud.labels.empty();
 }
 
 SortedPoints MapBuilder::State::sort(const PointCloud& cloud, std::size_t begin, std::size_t end,
@@ -90,7 +92,7 @@ VoxelMap MapBuilder::State::make_map(std::optional<SortedPoints> last_points) {
   map.frame.epsg = options.epsg;
   map.has_color = has_color;
   map.levels.push_back(make_finest_level(std::move(blocks), last_points ? &*last_points : nullptr,
-                                         {options.voxel_sizes.front(), has_intensity, options.epoch}));
+                                         {options.voxel_sizes.front(), has_intensity, has_labels, options.epoch}));
   last_points.reset();
   compute_normals(map.levels.front());
   add_coarser_levels(map, options.voxel_sizes);

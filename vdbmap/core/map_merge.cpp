@@ -11,6 +11,7 @@
 #include <utility>
 
 #include "vdbmap/core/hierarchy.h"
+#include "vdbmap/core/label_votes.h"
 #include "vdbmap/core/normals.h"
 #include "vdbmap/core/voxel_assembly.h"
 
@@ -50,6 +51,17 @@ MapFrame merged_frame(const VoxelMap& a, const VoxelMap& b) {
                                 " cannot be merged");
   }
   return {a.finest().size() > 0 ? a.frame.anchor : b.frame.anchor, epsg_a ? epsg_a : epsg_b};
+}
+
+bool has_labels(const VoxelMap& map) { return !map.finest().channels().labels.empty(); }
+
+// Where one map does not say whose numbers its labels are, nobody can say it of both.
+LabelScheme merged_scheme(const VoxelMap& a, const VoxelMap& b) {
+  if (!has_labels(a) || !has_labels(b)) return has_labels(a) ? a.label_scheme : b.label_scheme;
+  if (a.label_scheme == b.label_scheme) return a.label_scheme;
+  if (a.label_scheme == LabelScheme::kUnknown || b.label_scheme == LabelScheme::kUnknown) return LabelScheme::kUnknown;
+  throw std::invalid_argument("maps with labels of " + std::string(text_of(a.label_scheme)) + " and of " +
+                              std::string(text_of(b.label_scheme)) + " cannot be merged");
 }
 
 // Eigen pads the numbers of a row to columns.
@@ -163,6 +175,15 @@ class LevelMerger {
                               second.first / (first.first + second.first) * (second.second - first.second));
   }
 
+  // Of two voters, each with all its points.
+  std::int32_t winning_label(const VoxelPair& pair) const {
+    std::vector<LabelVotes> votes;
+    add_vote(votes, pair.key, a_.finest().channels().labels[pair.in_a], record_a(pair).count);
+    add_vote(votes, pair.key, b_.finest().channels().labels[pair.in_b], record_b(pair).count);
+    sort_votes(votes);
+    return LabelElection(votes).winner(pair.key);
+  }
+
   // One value a voxel: of the map that has one, or of both as `combine` makes it.
   template <typename Value, typename Combine>
   std::vector<Value> merge_channel(std::vector<Value> VoxelChannels::*channel, const Combine& combine) const {
@@ -189,6 +210,7 @@ class LevelMerger {
     VoxelChannels merged;
     merged.intensities =
         merge_channel(&VoxelChannels::intensities, [&](const VoxelPair& pair) { return mean_intensity(pair); });
+    merged.labels = merge_channel(&VoxelChannels::labels, [&](const VoxelPair& pair) { return winning_label(pair); });
     merged.first_epochs = merge_channel(&VoxelChannels::first_epochs, [&](const VoxelPair& pair) {
       return std::min(a.first_epochs[pair.in_a], b.first_epochs[pair.in_b]);
     });
@@ -210,6 +232,7 @@ VoxelMap merge_maps(const VoxelMap& a, const VoxelMap& b) {
   VoxelMap merged;
   merged.frame = merged_frame(a, b);
   merged.has_color = a.has_color || b.has_color;
+  merged.label_scheme = merged_scheme(a, b);
 
   std::vector<VoxelPair> pairs =
       pair_voxels(list_voxels(a, merged.frame, &VoxelPair::in_a), list_voxels(b, merged.frame, &VoxelPair::in_b));

@@ -255,4 +255,14 @@ BlockSums SortedPoints::fold(std::size_t block) const {
   return voxels;
 }
 
+std::vector<LabelVotes> SortedPoints::votes(std::size_t block) const {
+  std::vector<LabelVotes> votes;
+  if (cloud_.labels.empty()) return votes;
+  for (const KeyedPoint& point : points_of(block)) {
+    add_vote(votes, key_of_voxel(blocks_[block], point.key), cloud_.labels[begin_ + point.source]);
+  }
+  sort_votes(votes);
+  return votes;
+}
+
 }  // namespace vdbmap

@@ -9,6 +9,7 @@
 
 #include <Eigen/Geometry>
 
+#include "vdbmap/core/label_votes.h"
 #include "vdbmap/core/large_allocator.h"
 #include "vdbmap/core/point_cloud.h"
 #include "vdbmap/core/voxel_block.h"
@@ -53,6 +54,9 @@ class SortedPoints {
 
   /// The sums of all voxels of a block.
   BlockSums fold(std::size_t block) const;
+
+  /// The votes of the points of a block for the labels of its voxels, sorted.
+  std::vector<LabelVotes> votes(std::size_t block) const;
 
  private:
   std::span<const KeyedPoint> points_of(std::size_t block) const {

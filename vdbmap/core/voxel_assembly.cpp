@@ -1,13 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "vdbmap/core/voxel_assembly.h"
 
-#include "vdbmap/core/voxel_block.h"
-
 namespace vdbmap {
-
-VoxelKey key_of_voxel(const VoxelIndex& voxel) {
-  return VoxelKey{static_cast<std::uint64_t>(block_of_voxel(voxel)) << 21 | key_in_block(voxel)};
-}
 
 VoxelAssembly::VoxelAssembly(double voxel_size, std::size_t expected_voxels) : voxel_size_(voxel_size) {
   records_.reserve(expected_voxels);

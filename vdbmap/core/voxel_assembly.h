@@ -2,19 +2,13 @@
 #pragma once
 
 #include <cstddef>
-#include <cstdint>
 #include <memory>
 #include <vector>
 
+#include "vdbmap/core/voxel_block.h"
 #include "vdbmap/core/voxel_level.h"
 
 namespace vdbmap {
-
-/// Sort key of a voxel: voxels sorted by it are in the order in which OpenVDB walks its tree.
-enum class VoxelKey : std::uint64_t {};
-
-/// Key of an addressable voxel.
-VoxelKey key_of_voxel(const VoxelIndex& voxel);
 
 /// Makes a level of voxels that come one by one in tree order (sorted by key_of_voxel(), each once).
 class VoxelAssembly {

@@ -20,6 +20,9 @@ enum class BlockKey : std::uint64_t {};
 /// Sort key of a voxel within its block, 21 bits: leaf, then offset in the leaf.
 using KeyInBlock = std::uint32_t;
 
+/// Sort key of a voxel among those of all blocks.
+enum class VoxelKey : std::uint64_t {};
+
 inline constexpr int kBlockBits = 7;
 
 /// Key of the block that holds an addressable voxel.
@@ -58,6 +61,16 @@ inline VoxelIndex leaf_origin_in_block(KeyInBlock key) {
 
 /// Offset of the voxel within its leaf.
 inline openvdb::Index offset_in_leaf(KeyInBlock key) { return key & 511; }
+
+/// Key of a voxel of a block.
+inline VoxelKey key_of_voxel(BlockKey block, KeyInBlock key) {
+  return VoxelKey{static_cast<std::uint64_t>(block) << (3 * kBlockBits) | key};
+}
+
+/// Key of an addressable voxel.
+inline VoxelKey key_of_voxel(const VoxelIndex& voxel) {
+  return key_of_voxel(block_of_voxel(voxel), key_in_block(voxel));
+}
 
 /// The sums of one voxel of a block.
 struct KeyedSums {

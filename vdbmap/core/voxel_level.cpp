@@ -25,9 +25,12 @@ std::vector<const VoxelLeaf*> VoxelLevel::leaves() const {
 }
 
 std::size_t VoxelLevel::memory_bytes() const {
-  return tree_->memUsage() + records_.capacity() * sizeof(VoxelRecord) +
-         channels_.intensities.capacity() * sizeof(float) +
-         (channels_.first_epochs.capacity() + channels_.last_epochs.capacity()) * sizeof(std::int32_t);
+  std::size_t bytes = tree_->memUsage() + records_.capacity() * sizeof(VoxelRecord);
+  for_each_channel([&](const char* /*name*/, auto channel) {
+    const auto& values = channels_.*channel;
+    bytes += values.capacity() * sizeof(values[0]);
+  });
+  return bytes;
 }
 
 }  // namespace vdbmap

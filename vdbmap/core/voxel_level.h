@@ -21,9 +21,19 @@ namespace vdbmap {
 /// Attributes that only some maps know: empty, or one value a voxel in the order of the records.
 struct VoxelChannels {
   std::vector<float> intensities;          ///< mean intensity, scale of the source
+  std::vector<std::int32_t> labels;        ///< class of most points that have one, else kNoLabel (label_scheme.h)
   std::vector<std::int32_t> first_epochs;  ///< epoch in which the voxel was first seen
   std::vector<std::int32_t> last_epochs;   ///< epoch in which the voxel was last seen
 };
+
+/// Calls body(name, member) for every channel; the name is that of its attribute and grid in files.
+template <typename Body>
+void for_each_channel(const Body& body) {
+  body("intensity", &VoxelChannels::intensities);
+  body("label", &VoxelChannels::labels);
+  body("first_epoch", &VoxelChannels::first_epochs);
+  body("last_epoch", &VoxelChannels::last_epochs);
+}
 
 /// One resolution of a map: occupied voxels and what is stored of each.
 ///

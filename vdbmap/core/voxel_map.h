@@ -7,6 +7,7 @@
 
 #include <Eigen/Core>
 
+#include "vdbmap/core/label_scheme.h"
 #include "vdbmap/core/voxel_level.h"
 
 namespace vdbmap {
@@ -23,7 +24,8 @@ struct MapFrame {
 struct VoxelMap {
   MapFrame frame;
   std::vector<VoxelLevel> levels;
-  bool has_color = false;  ///< whether the points had colours; else all colour codes are 0
+  bool has_color = false;                            ///< whether the points had colours; else all colour codes are 0
+  LabelScheme label_scheme = LabelScheme::kUnknown;  ///< whose numbers the labels are
 
   const VoxelLevel& finest() const { return levels.front(); }
   const VoxelLevel& coarsest() const { return levels.back(); }

@@ -33,6 +33,8 @@ VoxelInfo decode(const VoxelMap& map, const VoxelLevel& level, const VoxelIndex&
   info.features = eigen_features(info.covariance);
   if (map.has_color) set_colors(info, color_of(record));
   info.intensity = value_of(level.channels().intensities, number);
+  info.label = value_of(level.channels().labels, number);
+  if (info.label) info.label_name = label_name(map.label_scheme, *info.label);
   info.first_epoch = value_of(level.channels().first_epochs, number);
   info.last_epoch = value_of(level.channels().last_epochs, number);
   return info;

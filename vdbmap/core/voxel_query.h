@@ -3,6 +3,7 @@
 
 #include <cstdint>
 #include <optional>
+#include <string>
 #include <vector>
 
 #include "vdbmap/core/eigen_features.h"
@@ -26,6 +27,8 @@ struct VoxelInfo {
   std::optional<Eigen::Vector3d> linear_color;           ///< RGB 0..1, where the map has colours
   std::optional<Rgb16> color;                            ///< the same in sRGB
   std::optional<float> intensity;                        ///< scale of the source
+  std::optional<std::int32_t> label;                     ///< class, kNoLabel where no point has one
+  std::string label_name;                                ///< what it stands for; empty where the map has no labels
   std::optional<std::int32_t> first_epoch;
   std::optional<std::int32_t> last_epoch;
 };

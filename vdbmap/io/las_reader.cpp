@@ -95,6 +95,7 @@ ReadResult read_las(const std::filesystem::path& path) {
   const std::string_view points = file.bytes(header.num_points * header.record_length);
   ReadResult result = finish_reading(path, read_points(points.data(), header));
   result.epsg = system.epsg;
+  if (!result.cloud.labels.empty()) result.label_scheme = LabelScheme::kAsprs;
   result.metres_per_unit = system.metres_per_unit.value_or(1.0);
   return result;
 }

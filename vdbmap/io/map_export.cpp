@@ -3,6 +3,8 @@
 
 #include <algorithm>
 #include <cctype>
+#include <cstdint>
+#include <limits>
 #include <stdexcept>
 #include <string>
 
@@ -19,6 +21,19 @@ Rgb16 srgb_of(const VoxelRecord& record) {
   return {srgb_from_linear(linear.x()), srgb_from_linear(linear.y()), srgb_from_linear(linear.z())};
 }
 
+// Classes as clouds have them; nothing where one does not fit there.
+std::vector<std::uint16_t> point_labels(const std::vector<std::int32_t>& labels) {
+  const auto fits = [](std::int32_t label) { return label >= 0 && label <= std::numeric_limits<std::uint16_t>::max(); };
+  if (!std::ranges::all_of(labels, fits)) return {};
+  return {labels.begin(), labels.end()};
+}
+
+void make_las_labels(std::vector<std::uint16_t>& labels, LabelScheme scheme) {
+  constexpr std::uint16_t kHighestLasLabel = 31;
+  for (std::uint16_t& label : labels) label = static_cast<std::uint16_t>(asprs_label(scheme, label));
+  if (std::ranges::any_of(labels, [](std::uint16_t label) { return label > kHighestLasLabel; })) labels.clear();
+}
+
 }  // namespace
 
 PointCloud points_of_level(const VoxelMap& map, const VoxelLevel& level) {
@@ -26,6 +41,7 @@ PointCloud points_of_level(const VoxelMap& map, const VoxelLevel& level) {
   cloud.positions.resize(level.size());
   if (map.has_color) cloud.colors.resize(level.size());
   cloud.intensities = level.channels().intensities;
+  cloud.labels = point_labels(level.channels().labels);
   parallel_for_each_voxel(level, [&](const VoxelIndex& voxel, std::size_t number) {
     const VoxelRecord& record = level.records()[number];
     cloud.positions[number] = map.frame.anchor + mean_of(record, voxel, level.voxel_size());
@@ -55,8 +71,10 @@ void write_points(const std::filesystem::path& path, const PointCloud& cloud, co
 }
 
 void export_points(const std::filesystem::path& path, const VoxelMap& map, const VoxelLevel& level) {
-  export_format(path);
-  write_points(path, points_of_level(map, level), map.frame.epsg);
+  const PointFormat format = export_format(path);
+  PointCloud cloud = points_of_level(map, level);
+  if (format == PointFormat::kLas) make_las_labels(cloud.labels, map.label_scheme);
+  write_points(path, cloud, map.frame.epsg);
 }
 
 }  // namespace vdbmap

@@ -6,14 +6,18 @@
 #include <string>
 
 #include "vdbmap/core/error.h"
+#include "vdbmap/io/label_file.h"
 
 namespace vdbmap {
 namespace {
 
 // The reader serves one scan at a time: the one before must have been taken.
-std::future<ReadResult> start_reading(ScanReader& reader, const ScanPlace& scan, bool reads_ahead) {
-  return std::async(reads_ahead ? std::launch::async : std::launch::deferred,
-                    [&reader, scan] { return reader.read(scan); });
+std::future<ReadResult> start_reading(ScanReader& reader, const MapInput& input, bool reads_ahead) {
+  return std::async(reads_ahead ? std::launch::async : std::launch::deferred, [&reader, &input] {
+    ReadResult read = reader.read(input.scan);
+    if (input.labels) attach_labels(read, *input.labels);
+    return read;
+  });
 }
 
 void note_epsg(MapFromFiles& result, const std::filesystem::path& file, const std::optional<int>& epsg) {
@@ -25,10 +29,22 @@ void note_epsg(MapFromFiles& result, const std::filesystem::path& file, const st
   result.epsg_of_files = epsg;
 }
 
+// One file that does not say whose numbers its labels are is enough for nobody to know.
+void note_scheme(MapFromFiles& result, const std::filesystem::path& file, LabelScheme scheme) {
+  const LabelScheme before = result.scheme_of_files.value_or(scheme);
+  const bool are_known = scheme != LabelScheme::kUnknown && before != LabelScheme::kUnknown;
+  if (are_known && scheme != before) {
+    throw IoError::malformed(
+        file, "has labels of " + std::string(text_of(scheme)) + ", files before it of " + std::string(text_of(before)));
+  }
+  result.scheme_of_files = are_known ? scheme : LabelScheme::kUnknown;
+}
+
 void note(MapFromFiles& result, const MapInput& input, const ReadResult& read) {
   result.num_points += read.cloud.size();
-  result.num_dropped += read.num_dropped;
+  result.num_dropped += read.dropped.size();
   if (read.metres_per_unit != 1.0) result.foreign_units.push_back({input.scan.file, read.metres_per_unit});
+  if (!read.cloud.labels.empty()) note_scheme(result, input.scan.file, read.label_scheme);
   if (!input.map_from_scan) note_epsg(result, input.scan.file, read.epsg);
 }
 
@@ -61,11 +77,12 @@ MapFromFiles build_map_from_files(const std::vector<MapInput>& inputs, const Map
   MapBuilder builder(options.build);
   MapFromFiles result;
   ScanReader reader;
-  std::future<ReadResult> next = start_reading(reader, inputs.front().scan, options.reads_ahead);
+  std::future<ReadResult> next = start_reading(reader, inputs.front(), options.reads_ahead);
   for (std::size_t i = 0; i < inputs.size(); ++i) {
-    const ReadResult read = next.get();
+    ReadResult read = next.get();
     const bool is_last = i + 1 == inputs.size();
-    if (!is_last) next = start_reading(reader, inputs[i + 1].scan, options.reads_ahead);
+    if (!is_last) next = start_reading(reader, inputs[i + 1], options.reads_ahead);
+    if (options.label_scheme) read.label_scheme = *options.label_scheme;
     note(result, inputs[i], read);
     if (is_last) {
       result.map = finish(builder, inputs[i], read.cloud);
@@ -74,6 +91,7 @@ MapFromFiles build_map_from_files(const std::vector<MapInput>& inputs, const Map
     }
     options.on_scan_done();
   }
+  result.map.label_scheme = result.scheme_of_files.value_or(LabelScheme::kUnknown);
   if (!result.map.frame.epsg) result.map.frame.epsg = result.epsg_of_files;
   return result;
 }

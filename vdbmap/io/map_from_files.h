@@ -17,11 +17,14 @@ namespace vdbmap {
 /// A scan and where its points lie.
 struct MapInput {
   ScanPlace scan;
-  std::optional<Eigen::Isometry3d> map_from_scan;  ///< nothing: the points are in map coordinates
+  std::optional<Eigen::Isometry3d> map_from_scan = std::nullopt;  ///< nothing: the points are in map coordinates
+  std::optional<std::filesystem::path> labels =
+      std::nullopt;  ///< .label file of its points' classes, instead of its own labels
 };
 
 struct MapFromFilesOptions {
   BuildOptions build;                          ///< without `epsg`, that of the files in map coordinates is taken
+  std::optional<LabelScheme> label_scheme;     ///< whose numbers labels are, instead of what the files' formats say
   bool reads_ahead = true;                     ///< a thread of its own reads the next scan while one is folded
   std::function<void()> on_scan_done = [] {};  ///< called after each scan
 };
@@ -36,14 +39,15 @@ struct ForeignUnit {
 struct MapFromFiles {
   VoxelMap map;
   std::size_t num_points = 0;
-  std::size_t num_dropped = 0;             ///< points with a coordinate that is not finite
-  std::optional<int> epsg_of_files;        ///< of the files in map coordinates, where one says so
-  std::vector<ForeignUnit> foreign_units;  ///< taken as they are, as if in metres
+  std::size_t num_dropped = 0;                 ///< points with a coordinate that is not finite
+  std::optional<int> epsg_of_files;            ///< of the files in map coordinates, where one says so
+  std::optional<LabelScheme> scheme_of_files;  ///< of the files with labels; unknown where one does not say
+  std::vector<ForeignUnit> foreign_units;      ///< taken as they are, as if in metres
 };
 
 /// The map of all points in the scans. At most two scans are in memory at once. Throws IoError naming the scan
-/// that cannot be read, lies beyond the addressable range, or has another EPSG code than one before; and
-/// std::invalid_argument for no inputs or bad options.
+/// that cannot be read, lies beyond the addressable range, or has another EPSG code or label scheme than one before;
+/// and std::invalid_argument for no inputs or bad options.
 MapFromFiles build_map_from_files(const std::vector<MapInput>& inputs, const MapFromFilesOptions& options = {});
 
 }  // namespace vdbmap

@@ -10,10 +10,12 @@
 namespace vdbmap {
 namespace {
 
-std::size_t count_finite(const std::vector<Eigen::Vector3d>& positions) {
-  std::size_t count = 0;
-  for (const Eigen::Vector3d& position : positions) count += position.allFinite() ? 1 : 0;
-  return count;
+std::vector<std::size_t> places_of_non_finite(const std::vector<Eigen::Vector3d>& positions) {
+  std::vector<std::size_t> places;
+  for (std::size_t i = 0; i < positions.size(); ++i) {
+    if (!positions[i].allFinite()) places.push_back(i);
+  }
+  return places;
 }
 
 // Keeps the values whose point is finite; an attribute that the cloud does not have stays empty.
@@ -29,9 +31,9 @@ void keep_finite(std::vector<T>& values, const std::vector<Eigen::Vector3d>& pos
 
 }  // namespace
 
-std::size_t drop_non_finite(PointCloud& cloud) {
-  const std::size_t num_dropped = cloud.size() - count_finite(cloud.positions);
-  if (num_dropped == 0) return 0;
+std::vector<std::size_t> drop_non_finite(PointCloud& cloud) {
+  std::vector<std::size_t> dropped = places_of_non_finite(cloud.positions);
+  if (dropped.empty()) return dropped;
 
   keep_finite(cloud.colors, cloud.positions);
   keep_finite(cloud.intensities, cloud.positions);
@@ -39,16 +41,16 @@ std::size_t drop_non_finite(PointCloud& cloud) {
   keep_finite(cloud.rings, cloud.positions);
   keep_finite(cloud.labels, cloud.positions);
   std::erase_if(cloud.positions, [](const Eigen::Vector3d& position) { return !position.allFinite(); });
-  return num_dropped;
+  return dropped;
 }
 
 ReadResult finish_reading(const std::filesystem::path& path, PointCloud cloud) {
   ReadResult result;
-  result.num_dropped = drop_non_finite(cloud);
+  result.dropped = drop_non_finite(cloud);
   if (cloud.empty()) {
-    const std::string dropped = std::to_string(result.num_dropped);
+    const std::string dropped = std::to_string(result.dropped.size());
     throw IoError::malformed(
-        path, result.num_dropped == 0 ? "the file holds no points" : "none of the " + dropped + " points is finite");
+        path, result.dropped.empty() ? "the file holds no points" : "none of the " + dropped + " points is finite");
   }
   result.cloud = std::move(cloud);
   return result;

@@ -13,7 +13,7 @@ namespace vdbmap {
 namespace {
 
 // A block of every column fits into the first-level cache, and so do the records it comes from.
-constexpr std::size_t kBlockSize = 512;
+constexpr std::size_t kPointsAtOnce = 512;
 
 std::optional<FieldRole> find_role(const std::string& name) {
   static const std::unordered_map<std::string_view, FieldRole> kRoles = {
@@ -171,9 +171,9 @@ void store_numbers(PointCloud& cloud, const PointField& field, std::size_t first
 }
 
 void store_columns(PointCloud& cloud, const std::vector<PointColumn>& columns) {
-  std::array<double, kBlockSize> block;
-  for (std::size_t first = 0; first < cloud.size(); first += kBlockSize) {
-    const std::span<double> numbers(block.data(), std::min(kBlockSize, cloud.size() - first));
+  std::array<double, kPointsAtOnce> block;
+  for (std::size_t first = 0; first < cloud.size(); first += kPointsAtOnce) {
+    const std::span<double> numbers(block.data(), std::min(kPointsAtOnce, cloud.size() - first));
     for (const PointColumn& column : columns) {
       load_numbers(column.numbers, first, numbers);
       store_numbers(cloud, column.field, first, numbers);

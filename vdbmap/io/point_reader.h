@@ -6,6 +6,7 @@
 #include <optional>
 #include <vector>
 
+#include "vdbmap/core/label_scheme.h"
 #include "vdbmap/core/point_cloud.h"
 
 namespace vdbmap {
@@ -13,8 +14,9 @@ namespace vdbmap {
 /// What a point file held.
 struct ReadResult {
   PointCloud cloud;
-  std::size_t num_dropped = 0;   ///< points with a coordinate that is not finite
-  std::optional<int> epsg;       ///< of the coordinates, where the file says so
+  std::vector<std::size_t> dropped;  ///< places in the file of points with a coordinate that is not finite, rising
+  LabelScheme label_scheme = LabelScheme::kUnknown;  ///< whose numbers the labels are, where the format says so
+  std::optional<int> epsg;                           ///< of the coordinates, where the file says so
   double metres_per_unit = 1.0;  ///< length of the file's unit, where the file says so (a LAS file in feet: 0.3048)
 };
 

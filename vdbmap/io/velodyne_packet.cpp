@@ -11,7 +11,7 @@ namespace vdbmap {
 namespace {
 
 // VLP-16 User Manual 63-9243 Rev. E, section 9.3.2; the HDL-32E (63-9113) shares the layout.
-constexpr std::size_t kBlockSize = 100;
+constexpr std::size_t kFiringBlockSize = 100;
 constexpr std::size_t kChannelsPerBlock = 32;
 constexpr std::size_t kTimestampAt = 1200;
 constexpr std::size_t kReturnModeAt = 1204;
@@ -91,7 +91,7 @@ std::uint16_t little_endian_16(VelodynePayload payload, std::size_t at) {
 }
 
 std::uint16_t block_flag(VelodynePayload payload, std::size_t block) {
-  return little_endian_16(payload, block * kBlockSize);
+  return little_endian_16(payload, block * kFiringBlockSize);
 }
 
 // How far the sensor turned from each block to the next that was fired after it [0.01 deg].
@@ -121,7 +121,7 @@ struct Echo {
 };
 
 Echo echo(VelodynePayload payload, std::size_t block, std::size_t channel) {
-  const std::size_t at = block * kBlockSize + 4 + 3 * channel;
+  const std::size_t at = block * kFiringBlockSize + 4 + 3 * channel;
   return {little_endian_16(payload, at), payload[at + 2]};
 }
 
@@ -189,7 +189,7 @@ std::uint32_t velodyne_timestamp_us(VelodynePayload payload) {
 }
 
 std::uint16_t velodyne_azimuth(VelodynePayload payload, std::size_t block) {
-  return little_endian_16(payload, block * kBlockSize + 2);
+  return little_endian_16(payload, block * kFiringBlockSize + 2);
 }
 
 void decode_velodyne_packet(VelodynePayload payload, std::vector<VelodyneReturn>& returns) {

@@ -18,7 +18,7 @@
 namespace vdbmap {
 namespace {
 
-constexpr std::size_t kBlockSize = 1024;  // points
+constexpr std::size_t kPointsPerBlock = 1024;  // points
 
 bool needs_whole_number(FieldRole role) {
   switch (role) {
@@ -55,7 +55,7 @@ class PointCollector {
   void set(std::size_t column, double number) { numbers_[column][num_in_block_] = number; }
 
   void finish_point() {
-    if (++num_in_block_ == kBlockSize) store_block();
+    if (++num_in_block_ == kPointsPerBlock) store_block();
   }
 
   PointCloud finish() {
@@ -90,7 +90,7 @@ class PointCollector {
 
   XyzLayout layout_;
   PointCloud shape_;  // one point with the attributes that the columns provide
-  std::vector<std::array<double, kBlockSize>> numbers_;
+  std::vector<std::array<double, kPointsPerBlock>> numbers_;
   std::size_t num_in_block_ = 0;
   PointCloud cloud_;
 };

@@ -3,10 +3,12 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <numbers>
 #include <optional>
 #include <stdexcept>
 #include <string>
+#include <utility>
 
 #include "vdbmap/core/parallel.h"
 
@@ -15,8 +17,9 @@ namespace {
 
 constexpr double kDegPerRad = 180 / std::numbers::pi;
 constexpr std::size_t kMaxSamples = 200'000;  // voxels looked at
-constexpr std::size_t kMaxFitSamples = 20'000;
-constexpr double kStrayShare = 0.02;  // of the voxels on each side, that may lie outside of the picture
+constexpr std::size_t kMaxFitSamples = 5'000;
+constexpr double kStrayShare = 0.02;     // of the voxels on each side, that may lie outside of the picture
+constexpr double kOutsideShare = 0.005;  // the same of an orbit, where the near end of a street is large
 constexpr double kOrbitFieldOfViewDeg = 35;
 constexpr double kOrbitElevationDeg = -33;
 constexpr double kStreetFieldOfViewDeg = 68;
@@ -35,12 +38,16 @@ std::vector<Eigen::Vector3d> some_voxels(const VoxelLevel& level, std::size_t mo
   return centers;
 }
 
-double quantile(const std::vector<Eigen::Vector3d>& points, int axis, double share) {
-  std::vector<double> values;
-  for (const Eigen::Vector3d& point : points) values.push_back(point[axis]);
+double quantile_of(std::vector<double> values, double share) {
   const auto place = static_cast<std::ptrdiff_t>(std::lround(share * static_cast<double>(values.size() - 1)));
   std::nth_element(values.begin(), values.begin() + place, values.end());
   return values[static_cast<std::size_t>(place)];
+}
+
+double quantile(const std::vector<Eigen::Vector3d>& points, int axis, double share) {
+  std::vector<double> values;
+  for (const Eigen::Vector3d& point : points) values.push_back(point[axis]);
+  return quantile_of(std::move(values), share);
 }
 
 double principal_heading_deg(const std::vector<Eigen::Vector3d>& points, const Eigen::AlignedBox3d& box) {
@@ -81,20 +88,6 @@ Camera plan_camera(const SceneExtent& extent, const ImageSize& size, std::span<c
   return Camera::orthographic(map_from_camera_at({center.x(), center.y(), above}, 90, -90), width, size);
 }
 
-// Whether most of the points lie in the picture but for a margin: stray voxels all around would make a street a dot.
-bool shows_most(const Camera& camera, const std::vector<Eigen::Vector3d>& points) {
-  constexpr double kMargin = 0.03;
-  constexpr double kShare = 0.94;
-  std::size_t num_shown = 0;
-  for (const Eigen::Vector3d& point : points) {
-    const auto place = camera.project(point);
-    if (!place) continue;
-    const Eigen::Array2d share = place->pixel.array() / Eigen::Array2d(camera.size().width, camera.size().height);
-    num_shown += (share >= kMargin).all() && (share <= 1 - kMargin).all() ? 1 : 0;
-  }
-  return static_cast<double>(num_shown) >= kShare * static_cast<double>(points.size());
-}
-
 Camera orbit_at(const Eigen::Vector3d& center, double heading_deg, double elevation_deg, double distance,
                 const ImageSize& size) {
   Eigen::Isometry3d map_from_camera = map_from_camera_at(center, heading_deg, elevation_deg);
@@ -102,27 +95,62 @@ Camera orbit_at(const Eigen::Vector3d& center, double heading_deg, double elevat
   return Camera::perspective(map_from_camera, kOrbitFieldOfViewDeg, size);
 }
 
-// The nearest from which most of the map is seen.
-Camera fitting_orbit(const VoxelLevel& level, const SceneExtent& extent, double heading_deg, double elevation_deg,
-                     const ImageSize& size) {
-  const std::vector<Eigen::Vector3d> points = some_voxels(level, kMaxFitSamples);
-  const Eigen::Vector3d center = extent.box.center();
-  double near = 0;
-  double far = 20 * extent.box.diagonal().norm() * std::max(1.0, static_cast<double>(size.width) / size.height);
-  for (int i = 0; i < 40; ++i) {
-    const double middle = (near + far) / 2;
-    (shows_most(orbit_at(center, heading_deg, elevation_deg, middle, size), points) ? far : near) = middle;
+// Where the eye must be on one axis of the picture, `axis` of the points, for most of them to lie in the middle.
+double centered_eye(const std::vector<Eigen::Vector3d>& points, int axis, double low, double high, double eye_z) {
+  const auto offset_from = [&](double eye) {
+    std::vector<double> slopes;
+    for (const Eigen::Vector3d& point : points) {
+      if (point.z() > eye_z) slopes.push_back((point[axis] - eye) / (point.z() - eye_z));
+    }
+    return slopes.empty() ? 0 : quantile_of(slopes, kOutsideShare) + quantile_of(slopes, 1 - kOutsideShare);
+  };
+  constexpr int kSteps = 30;  // each halves the range
+  for (int step = 0; step < kSteps; ++step) {
+    const double middle = (low + high) / 2;
+    (offset_from(middle) > 0 ? low : high) = middle;
   }
-  return orbit_at(center, heading_deg, elevation_deg, far, size);
+  return (low + high) / 2;
+}
+
+// The nearest from which most of the map is seen, in the middle of the picture. Stray voxels all around would make a
+// street a dot: some may lie outside.
+//
+// In the frame of the camera's axes, an eye (a, c) sees the points (x, z) with |x - a| <= t (z - c), where t is the
+// tangent of half the field of view. So a - t c >= x - t z and -a - t c >= -x - t z for all of them, and the largest of
+// the right sides give the nearest c.
+Camera fitting_orbit(const VoxelLevel& level, double heading_deg, double elevation_deg, const ImageSize& size) {
+  constexpr double kMargin = 0.03;  // of the picture, on each side
+  const Eigen::Matrix3d map_from_axes =
+      map_from_camera_at(Eigen::Vector3d::Zero(), heading_deg, elevation_deg).linear();
+  std::vector<Eigen::Vector3d> points = some_voxels(level, kMaxFitSamples);
+  for (Eigen::Vector3d& point : points) point = map_from_axes.transpose() * point;
+
+  const double tangent = (1 - 2 * kMargin) * std::tan(kOrbitFieldOfViewDeg / 2 / kDegPerRad);
+  const Eigen::Vector2d tangents(tangent, tangent * size.height / size.width);
+  const auto farthest = [&](int axis, double sign) {
+    std::vector<double> values;
+    for (const Eigen::Vector3d& point : points) values.push_back(sign * point[axis] - tangents[axis] * point.z());
+    return quantile_of(values, 1 - kOutsideShare);
+  };
+  Eigen::Vector3d eye(0, 0, std::numeric_limits<double>::infinity());
+  for (const int axis : {0, 1}) {
+    eye.z() = std::min(eye.z(), -(farthest(axis, 1) + farthest(axis, -1)) / (2 * tangents[axis]));
+  }
+  for (const int axis : {0, 1}) {
+    const auto [low, high] = std::ranges::minmax(points, {}, [&](const auto& point) { return point[axis]; });
+    eye[axis] = centered_eye(points, axis, low[axis], high[axis], eye.z());
+  }
+  return Camera::perspective(map_from_camera_at(map_from_axes * eye, heading_deg, elevation_deg), kOrbitFieldOfViewDeg,
+                             size);
 }
 
 Camera orbit_camera(const VoxelLevel& level, const SceneExtent& extent, const ImageSize& size,
                     std::span<const double> numbers) {
   // The longest direction runs from left to right, a little towards the viewer.
-  if (numbers.empty()) return fitting_orbit(level, extent, extent.heading_deg + 90 - 25, kOrbitElevationDeg, size);
+  if (numbers.empty()) return fitting_orbit(level, extent.heading_deg + 90 - 25, kOrbitElevationDeg, size);
   check_count(numbers, 2, 3, "HEADING,ELEVATION[,DISTANCE]");
   check_elevation(numbers[1]);
-  if (numbers.size() == 2) return fitting_orbit(level, extent, numbers[0], numbers[1], size);
+  if (numbers.size() == 2) return fitting_orbit(level, numbers[0], numbers[1], size);
   return orbit_at(extent.box.center(), numbers[0], numbers[1], numbers[2], size);
 }
 

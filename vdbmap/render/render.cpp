@@ -121,6 +121,12 @@ std::vector<std::pair<std::string, Rgb8>> names_of(const std::vector<PathOverlay
   return names;
 }
 
+// Paths that lie on each other are all seen: the first is drawn last, and each one after it is a border to those
+// before.
+void draw_paths(VoxelView& view, const Camera& camera, const std::vector<PathOverlay>& paths, double width) {
+  for (std::size_t i = paths.size(); i-- > 0;) draw_path(view, camera, paths[i], static_cast<double>(1 + i) * width);
+}
+
 bool is_in_voxel(const VoxelLevel& level, const Camera& camera) {
   const Eigen::Vector3d eye = camera.map_from_camera().translation();
   const double voxels_per_metre = 1 / level.voxel_size();
@@ -144,8 +150,7 @@ RenderResult render(const VoxelMap& map, const RenderOptions& options, const Ren
   VoxelView view = view_voxels(level, colors, camera);
   if (options.has_decoration && options.view == View::kPlan) draw_metre_grid(view.image, camera, map.frame.anchor);
   for (const PointsOverlay& cloud : points) draw_points(view, camera, cloud, level.voxel_size());
-  const double path_width = std::max(2.0, letter_size(options.size) / 5.0);
-  for (const PathOverlay& each : paths) draw_path(view, camera, each, path_width);
+  draw_paths(view, camera, paths, std::max(2.0, letter_size(options.size) / 5.0));
   if (options.has_decoration) {
     draw_scale(view.image, camera, view);
     draw_north_arrow(view.image, heading_deg(camera));

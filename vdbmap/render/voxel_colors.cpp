@@ -4,8 +4,11 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <map>
 #include <set>
 #include <stdexcept>
+
+#include "vdbmap/render/label_colors.h"
 
 namespace vdbmap {
 namespace {
@@ -15,6 +18,7 @@ constexpr std::size_t kScaleSteps = 256;
 constexpr double kLowShare = 0.01;  // of the values, that may lie outside of the scale
 constexpr double kHighShare = 0.98;
 constexpr std::size_t kMaxEpochs = 10;  // in the legend
+constexpr std::size_t kMaxLabels = 20;
 
 void check_known(bool is_known, const char* asked_for, const char* missing) {
   if (is_known) return;
@@ -24,7 +28,7 @@ void check_known(bool is_known, const char* asked_for, const char* missing) {
 void check_available(const VoxelMap& map, const VoxelLevel& level, ColorBy color_by) {
   if (color_by == ColorBy::kRgb) check_known(map.has_color, "rgb", "colours");
   if (color_by == ColorBy::kIntensity) check_known(!level.channels().intensities.empty(), "intensity", "intensities");
-  if (color_by == ColorBy::kLabel) check_known(false, "label", "labels");
+  if (color_by == ColorBy::kLabel) check_known(!level.channels().labels.empty(), "label", "labels");
   if (color_by == ColorBy::kEpoch) check_known(!level.channels().last_epochs.empty(), "epoch", "epochs");
 }
 
@@ -79,6 +83,20 @@ std::vector<std::pair<std::string, Rgb8>> epoch_entries(const std::vector<std::i
   return entries;
 }
 
+// The labels of most voxels, in the order of their numbers.
+std::vector<std::pair<std::string, Rgb8>> label_entries(LabelScheme scheme, const std::vector<std::int32_t>& labels) {
+  std::map<std::int32_t, std::size_t> counts;
+  for (const std::int32_t label : labels) ++counts[label];
+  while (counts.size() > kMaxLabels) {
+    counts.erase(std::ranges::min_element(counts, {}, [](const auto& entry) { return entry.second; }));
+  }
+  std::vector<std::pair<std::string, Rgb8>> entries;
+  for (const auto& [label, count] : counts) {
+    entries.emplace_back(label_name(scheme, label), label_color(scheme, label));
+  }
+  return entries;
+}
+
 }  // namespace
 
 VoxelColors::VoxelColors(const VoxelMap& map, const VoxelLevel& level, std::optional<ColorBy> color_by)
@@ -101,8 +119,11 @@ VoxelColors::VoxelColors(const VoxelMap& map, const VoxelLevel& level, std::opti
       legend_.title = "last seen in epoch";
       legend_.entries = epoch_entries(level.channels().last_epochs);
       break;
-    case ColorBy::kRgb:
     case ColorBy::kLabel:
+      legend_.title = "class";
+      legend_.entries = label_entries(map.label_scheme, level.channels().labels);
+      break;
+    case ColorBy::kRgb:
       break;
   }
 }
@@ -138,7 +159,7 @@ LinearColor VoxelColors::color_of(const VoxelIndex& voxel, std::size_t record) c
     case ColorBy::kEpoch:
       return linear_of(category_color(static_cast<std::size_t>(level_.channels().last_epochs[record])));
     case ColorBy::kLabel:
-      break;
+      return linear_of(label_color(map_.label_scheme, level_.channels().labels[record]));
   }
   return LinearColor::Zero();
 }

@@ -14,10 +14,10 @@
 #include "tests/support/raw_files.h"
 #include "tests/support/sanitizers.h"
 #include "tests/support/threads.h"
-#include "tools/simulator/label_file.h"
 #include "tools/simulator/material.h"
 #include "vdbmap/core/error.h"
 #include "vdbmap/io/atomic_file.h"
+#include "vdbmap/io/label_file.h"
 #include "vdbmap/io/point_reader.h"
 #include "vdbmap/io/trajectory_file.h"
 
@@ -145,7 +145,7 @@ TEST_F(Simulation, LabelsCountAsManyAsPoints) {
 // Points of a car lie in its box but for mirrors (14 cm), trim (8 mm) and five times the noise of 5 mm.
 TEST_F(Simulation, PointsOfVehiclesLieInTheirBoxes) {
   const PointCloud cloud = read_points(out() / "epoch0" / "cloud.las").cloud;
-  const std::vector<PointTruth> truth = read_labels(out() / "epoch0" / "labels" / "cloud.label");
+  const std::vector<PointLabel> truth = read_labels(out() / "epoch0" / "labels" / "cloud.label");
   const std::map<int, Box> boxes = read_vehicles(out() / "epoch0" / "vehicles.csv");
   std::map<int, int> num_points;
   for (std::size_t i = 0; i < cloud.size(); ++i) {
@@ -221,16 +221,6 @@ TEST(SimulateOptions, RefusesScansAndEpochsThatCannotBe) {
   options = {};
   options.sensors = parse_sensors("vlp16@2");
   EXPECT_THROW(options.check(), std::invalid_argument);
-}
-
-TEST(LabelFile, ReadsWhatItWrites) {
-  const test::TemporaryFolder folder;
-  const std::vector<PointTruth> truth = {{10, 1}, {40, 0}, {70, 65534}};
-  write_labels(folder / "a.label", truth);
-  EXPECT_EQ(read_labels(folder / "a.label"), truth);
-  EXPECT_EQ(test::read_raw(folder / "a.label").substr(0, 4), std::string("\x0a\x00\x01\x00", 4));
-  test::write_raw(folder / "cut.label", "12345");
-  EXPECT_THROW(read_labels(folder / "cut.label"), IoError);
 }
 
 }  // namespace

@@ -54,9 +54,7 @@ VoxelMap single_point(const Eigen::Vector3d& point, const BuildOptions& options 
 }
 
 void expect_same_channels(const VoxelChannels& a, const VoxelChannels& b) {
-  EXPECT_EQ(a.intensities, b.intensities);
-  EXPECT_EQ(a.first_epochs, b.first_epochs);
-  EXPECT_EQ(a.last_epochs, b.last_epochs);
+  for_each_channel([&](const char* name, auto channel) { EXPECT_EQ(a.*channel, b.*channel) << name; });
 }
 
 void expect_identical(const VoxelMap& a, const VoxelMap& b) {
@@ -260,6 +258,45 @@ TEST(MergeMaps, EpochsSpanBothMaps) {
     EXPECT_EQ(level.channels().first_epochs, std::vector<std::int32_t>{2});
     EXPECT_EQ(level.channels().last_epochs, std::vector<std::int32_t>{5});
   }
+}
+
+PointCloud labelled_voxel(double x, std::vector<std::uint16_t> labels) {
+  PointCloud cloud;
+  cloud.positions.assign(labels.size(), {x, 0.05, 0.05});
+  cloud.labels = std::move(labels);
+  return cloud;
+}
+
+TEST(MergeMaps, AVoxelHasTheLabelOfTheMapWithMorePointsInIt) {
+  const auto label_of = [](std::vector<std::uint16_t> a, std::vector<std::uint16_t> b) {
+    const VoxelMap map_a = build_map(labelled_voxel(0.05, std::move(a)), test::anchored({0, 0, 0}));
+    const VoxelMap map_b = build_map(labelled_voxel(0.05, std::move(b)), test::anchored({0, 0, 0}));
+    EXPECT_EQ(test::difference(merge_maps(map_a, map_b), merge_maps(map_b, map_a)), "");
+    return merge_maps(map_a, map_b).finest().channels().labels;
+  };
+  EXPECT_EQ(label_of({4}, {9, 9}), std::vector<std::int32_t>{9});
+  EXPECT_EQ(label_of({4, 4, 9}, {9, 9}), std::vector<std::int32_t>{4});  // though nine has more votes
+  EXPECT_EQ(label_of({9}, {4}), std::vector<std::int32_t>{4});
+  EXPECT_EQ(label_of({0, 0, 0}, {4}), std::vector<std::int32_t>{4});
+}
+
+TEST(MergeMaps, LabelsOfOneMapAreKept) {
+  const VoxelMap plain = single_point({0.05, 0.05, 0.05});
+  VoxelMap labelled = build_map(labelled_voxel(1.05, {6}), test::anchored({0, 0, 0}));
+  labelled.label_scheme = LabelScheme::kAsprs;
+  const VoxelMap merged = merge_maps(plain, labelled);
+  EXPECT_EQ(merged.finest().channels().labels, (std::vector<std::int32_t>{kNoLabel, 6}));
+  EXPECT_EQ(merged.label_scheme, LabelScheme::kAsprs);
+}
+
+TEST(MergeMaps, LabelSchemesThatDifferAreRefused) {
+  VoxelMap a = build_map(labelled_voxel(0.05, {6}), test::anchored({0, 0, 0}));
+  VoxelMap b = a;
+  a.label_scheme = LabelScheme::kAsprs;
+  EXPECT_EQ(merge_maps(a, b).label_scheme, LabelScheme::kUnknown);
+  EXPECT_EQ(merge_maps(a, a).label_scheme, LabelScheme::kAsprs);
+  b.label_scheme = LabelScheme::kSemanticKitti;
+  EXPECT_THROW(merge_maps(a, b), std::invalid_argument);
 }
 
 TEST(MergeMaps, TheResultDoesNotDependOnTheNumberOfThreads) {

@@ -148,7 +148,9 @@ TEST(VoxelInfo, AttributesOfTheMapAreDecoded) {
   cloud.positions = {{0.05, 0.05, 0.05}, {5.05, 0.05, 0.05}};
   cloud.colors = {{65535, 0, 32896}, {0, 0, 0}};
   cloud.intensities = {0.25F, 0.75F};
-  const VoxelMap map = build_map(cloud, {.voxel_sizes = {0.1}, .anchor = {}, .epsg = {}, .epoch = 3});
+  cloud.labels = {40, 0};
+  VoxelMap map = build_map(cloud, {.voxel_sizes = {0.1}, .anchor = {}, .epsg = {}, .epoch = 3});
+  map.label_scheme = LabelScheme::kSemanticKitti;
   const auto first = voxel_at(map, map.finest(), cloud.positions[0]);
   const auto second = voxel_at(map, map.finest(), cloud.positions[1]);
   ASSERT_TRUE(first && second);
@@ -158,6 +160,10 @@ TEST(VoxelInfo, AttributesOfTheMapAreDecoded) {
   EXPECT_NEAR(first->color->b, 32896, 3);  // rounded to 1/65535 in linear light
   EXPECT_EQ(first->intensity, 0.25F);
   EXPECT_EQ(second->intensity, 0.75F);
+  EXPECT_EQ(first->label, 40);
+  EXPECT_EQ(first->label_name, "road");
+  EXPECT_EQ(second->label, kNoLabel);
+  EXPECT_EQ(second->label_name, "no class");
   EXPECT_EQ(second->first_epoch, 3);
   EXPECT_EQ(second->last_epoch, 3);
 }
@@ -168,6 +174,8 @@ TEST(VoxelInfo, AttributesThatTheMapLacksAreEmpty) {
   const VoxelMap map = build_map(cloud);
   const auto voxel = voxel_at(map, map.finest(), cloud.positions[0]);
   ASSERT_TRUE(voxel);
+  EXPECT_FALSE(voxel->label);
+  EXPECT_EQ(voxel->label_name, "");
   EXPECT_FALSE(voxel->linear_color || voxel->color || voxel->intensity || voxel->first_epoch || voxel->last_epoch);
   EXPECT_EQ(voxel->covariance, Eigen::Matrix3d::Zero());
 }

@@ -35,7 +35,7 @@ TEST_F(KittiBin, ReadsPositionAndIntensity) {
 
 TEST_F(KittiBin, DropsAndCountsPointsThatAreNotFinite) {
   const ReadResult result = read(raw(NAN, 0.0f, 0.0f, 1.0f, 4.0f, 5.0f, 6.0f, 2.0f, 0.0f, -INFINITY, 0.0f, 3.0f));
-  EXPECT_EQ(result.num_dropped, 2u);
+  EXPECT_EQ(result.dropped.size(), 2u);
   EXPECT_EQ(result.cloud.intensities, std::vector<float>{2.0f});
 }
 

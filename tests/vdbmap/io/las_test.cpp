@@ -195,7 +195,7 @@ TEST_F(Las, CoordinatesThatOverflowAreDroppedWithTheirAttributesAndCounted) {
   las.points[0].x = 1;
   const ReadResult result = read(las.bytes());
 
-  EXPECT_EQ(result.num_dropped, 1U);
+  EXPECT_EQ(result.dropped.size(), 1U);
   EXPECT_EQ(result.cloud.intensities, (std::vector<float>{400}));
   EXPECT_EQ(result.cloud.times.size(), 1U);
 }
@@ -313,7 +313,7 @@ TEST_F(Las, RecordedFileInFeetWithoutCode) {
   const ReadResult result = read_las(*data / "las" / "autzen_trim.las");
 
   EXPECT_EQ(result.cloud.size(), 110'000U);
-  EXPECT_EQ(result.num_dropped, 0U);
+  EXPECT_EQ(result.dropped.size(), 0U);
   EXPECT_EQ(result.epsg, std::nullopt);
   EXPECT_EQ(result.metres_per_unit, 0.3048);
   EXPECT_EQ(result.cloud.colors.size(), result.cloud.size());

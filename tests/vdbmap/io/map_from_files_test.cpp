@@ -8,6 +8,7 @@
 
 #include "tests/support/folders.h"
 #include "tests/support/raw_files.h"
+#include "vdbmap/io/label_file.h"
 #include "vdbmap/io/las.h"
 #include "vdbmap/io/ply.h"
 
@@ -82,6 +83,34 @@ TEST_F(MapFromFilesTest, TellsWhatTheFilesHeld) {
   EXPECT_EQ(built.epsg_of_files, 25832);
   EXPECT_EQ(built.map.frame.epsg, 25832);
   EXPECT_TRUE(built.foreign_units.empty());
+}
+
+TEST_F(MapFromFilesTest, LasFilesAndLabelFilesSayWhoseNumbersTheirLabelsAre) {
+  PointCloud cloud = line(2, {0.01, 0.01, 0.01});
+  cloud.labels = {6, 6};
+  write_las(folder_ / "a.las", cloud, {});
+  EXPECT_EQ(build_map_from_files({whole_file("a.las")}).map.label_scheme, LabelScheme::kAsprs);
+
+  write_labels(folder_ / "a.label", {{50, 3}, {50, 3}});
+  MapInput input = whole_file("a.las");
+  input.labels = folder_ / "a.label";
+  const VoxelMap map = build_map_from_files({input}).map;
+  EXPECT_EQ(map.label_scheme, LabelScheme::kSemanticKitti);
+  EXPECT_EQ(map.finest().channels().labels, std::vector<std::int32_t>{50});
+
+  const MapInput ply_input = ply("b.ply", cloud);
+  EXPECT_EQ(build_map_from_files({ply_input}).map.label_scheme, LabelScheme::kUnknown);
+  EXPECT_EQ(build_map_from_files({ply_input, whole_file("a.las")}).map.label_scheme, LabelScheme::kUnknown);
+  EXPECT_EQ(build_map_from_files({whole_file("a.las"), ply("plain.ply", line(2, {5, 0, 0}))}).map.label_scheme,
+            LabelScheme::kAsprs);
+  MapFromFilesOptions options;
+  options.label_scheme = LabelScheme::kSemanticKitti;
+  EXPECT_EQ(build_map_from_files({ply_input, whole_file("a.las")}, options).map.label_scheme,
+            LabelScheme::kSemanticKitti);
+  EXPECT_EQ(io_error_of([&] {
+              build_map_from_files({whole_file("a.las"), input});
+            }),
+            "a.las: has labels of semantickitti, files before it of asprs");
 }
 
 TEST_F(MapFromFilesTest, AnEpsgCodeOfTheOptionsComesFirst) {

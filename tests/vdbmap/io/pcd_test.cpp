@@ -111,10 +111,10 @@ TEST_F(Pcd, DropsAndCountsPointsThatAreNotFinite) {
   const std::string ring = " ring";
   const ReadResult result = read(Header{"binary", "3", ring, " 1", " U", " 1"} + raw(kNan, kNan, kNan, '\1') +
                                  raw(1.0f, 2.0f, 3.0f, '\2') + raw(1.0f, INFINITY, 3.0f, '\3'));
-  EXPECT_EQ(result.num_dropped, 2u);
+  EXPECT_EQ(result.dropped.size(), 2u);
   EXPECT_EQ(result.cloud.rings, std::vector<std::uint16_t>{2});
 
-  EXPECT_EQ(read(Header{"ascii", "2"} + "nan nan nan\n1 2 3\n").num_dropped, 1u);
+  EXPECT_EQ(read(Header{"ascii", "2"} + "nan nan nan\n1 2 3\n").dropped.size(), 1u);
   EXPECT_EQ(error(Header{"ascii", "1"} + "nan 0 0\n"), "scan.pcd: none of the 1 points is finite");
   EXPECT_EQ(error(Header{"binary", "0"}), "scan.pcd: the file holds no points");
 }

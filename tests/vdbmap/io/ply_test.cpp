@@ -150,11 +150,11 @@ TEST_F(Ply, DropsAndCountsPointsThatAreNotFinite) {
       read(header("binary_little_endian", "4", "property float intensity\n") + raw(1.0f, 2.0f, 3.0f, 10.0f) +
            raw(kNotANumber, 2.0f, 3.0f, 20.0f) + raw(1.0f, 2.0f, -INFINITY, 30.0f) + raw(4.0f, 5.0f, 6.0f, 40.0f));
 
-  EXPECT_EQ(result.num_dropped, 2u);
+  EXPECT_EQ(result.dropped.size(), 2u);
   ASSERT_EQ(result.cloud.size(), 2u);
   EXPECT_EQ(result.cloud.positions[1], Eigen::Vector3d(4, 5, 6));
   EXPECT_EQ(result.cloud.intensities, (std::vector<float>{10, 40}));
-  EXPECT_EQ(read(header("ascii", "3") + "nan 0 0\n1 1 1\n0 -inf 1e999\n").num_dropped, 2u);
+  EXPECT_EQ(read(header("ascii", "3") + "nan 0 0\n1 1 1\n0 -inf 1e999\n").dropped.size(), 2u);
 }
 
 TEST_F(Ply, RefusesFilesWithoutAnyPoint) {
@@ -233,7 +233,7 @@ TEST_F(Ply, ReadsTheFilesOfCloudCompare) {
   for (const auto& [name, num_points] : {std::pair("source.ply", 69792u), std::pair("target.ply", 69088u)}) {
     const ReadResult result = read_ply(*data / "pair" / name);
     ASSERT_EQ(result.cloud.size(), num_points);
-    EXPECT_EQ(result.num_dropped, 0u);
+    EXPECT_EQ(result.dropped.size(), 0u);
 
     const std::string bytes = test::read_raw(*data / "pair" / name);
     const char* record = bytes.data() + bytes.size() - 16 * num_points;  // float x, y, z, intensity

@@ -99,7 +99,7 @@ TEST_P(PointFormats, ReadBackWhatTheyWrote) {
   const PointCloud cloud = small_cloud();
   const ReadResult result = round_trip(cloud);
 
-  EXPECT_EQ(result.num_dropped, 0u);
+  EXPECT_EQ(result.dropped.size(), 0u);
   ASSERT_EQ(result.cloud.size(), cloud.size());
   for (std::size_t i = 0; i < cloud.size(); ++i) {
     const Eigen::Vector3d error = result.cloud.positions[i] - cloud.positions[i];

@@ -61,7 +61,7 @@ TEST_F(ScanSequence, TheTurnsTogetherAreTheCapture) {
 TEST_F(ScanSequence, WholeFilesSayWhatTheyHeld) {
   const ReadResult read = ScanReader().read({write_raw(folder_ / "a.xyz", "1 2 3\nnan 2 3\n"), std::nullopt});
   EXPECT_EQ(read.cloud.size(), 1U);
-  EXPECT_EQ(read.num_dropped, 1U);
+  EXPECT_EQ(read.dropped.size(), 1U);
 }
 
 TEST_F(ScanSequence, ATurnBeyondTheCaptureIsAnErrorThatCountsThem) {

@@ -162,7 +162,7 @@ TEST_F(Xyz, ColorsAboveEightBitsAreTakenForSixteen) {
 TEST_F(Xyz, PointsThatAreNotFiniteAreDroppedWithTheirAttributesAndCounted) {
   const ReadResult result = read("x y z intensity\nnan 2 3 1\n4 5 6 2\n7 inf 9 3\n10 11 -1e999 4\nNaN NaN NaN nan\n");
 
-  EXPECT_EQ(result.num_dropped, 4U);
+  EXPECT_EQ(result.dropped.size(), 4U);
   EXPECT_EQ(result.cloud.positions, (Positions{{4, 5, 6}}));
   EXPECT_EQ(result.cloud.intensities, (std::vector<float>{2}));
 }

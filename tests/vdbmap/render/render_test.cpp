@@ -235,6 +235,49 @@ TEST(Render, PathsLieWhereTheyShouldAndArePaleBehindVoxels) {
   EXPECT_EQ(at(8) == render(map, options).image.at(0, 0), false);
 }
 
+TEST(Render, PathsOnEachOtherAreAllSeenTheFirstOnTop) {
+  Trajectory poses;
+  for (const double x : {-2.0, 2.0}) {
+    poses.map_from_scan.emplace_back(Eigen::Translation3d(x, 0, 0.5) * Eigen::Isometry3d::Identity());
+  }
+  RenderOptions options = small(View::kPlan);
+  options.size = {1600, 1000};  // paths are five pixels wide
+  options.camera = {0, 0, 8};
+  options.has_decoration = false;
+  const Image image =
+      render(test::map_of_voxels({{0, 0, 0}}), options, {{{"a", poses}, {"b", poses}, {"c", poses}}, {}}).image;
+  const Rgb8 red = rgb8(0xe3241f);
+  EXPECT_EQ(image.at(800, 500), red);
+  const std::size_t num_red = test::count_pixels(image, red);
+  const std::size_t num_green = test::count_pixels(image, rgb8(0x18a02a));
+  const std::size_t num_blue = test::count_pixels(image, rgb8(0x1f5fe0));
+  EXPECT_GT(num_red, 100U);
+  EXPECT_GT(num_green, num_red / 2);
+  EXPECT_GT(num_blue, num_red / 2);
+}
+
+TEST(Render, VoxelsHaveTheColorsOfTheirClasses) {
+  PointCloud cloud;
+  for (int i = -40; i < 40; ++i) {
+    for (int j = -40; j < 40; ++j) {
+      cloud.positions.emplace_back(0.1 * i + 0.05, 0.1 * j + 0.05, 0.05);
+      cloud.labels.push_back(i < 0 ? 70 : 10);
+    }
+  }
+  VoxelMap map = build_map(cloud);
+  map.label_scheme = LabelScheme::kSemanticKitti;
+  RenderOptions options = small(View::kPlan);
+  options.color_by = ColorBy::kLabel;
+  options.camera = {0, 0, 6};
+  options.has_decoration = false;
+  const Image image = render(map, options).image;
+  const Rgb8 vegetation = image.at(80, 100);
+  const Rgb8 car = image.at(240, 100);
+  EXPECT_GT(vegetation.g, vegetation.r + 40);
+  EXPECT_GT(vegetation.g, vegetation.b + 40);
+  EXPECT_GT(car.b, car.r + 80);
+}
+
 TEST(Render, PointsOnASurfaceAreSeenAndThoseBehindItNot) {
   std::vector<VoxelIndex> voxels;
   for (int j = -40; j < 40; ++j) {

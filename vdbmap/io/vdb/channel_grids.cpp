@@ -64,6 +64,7 @@ class GridFinder {
     grids.color = find<Vec3SGrid>("color" + suffix);
     grids.planarity = find<FloatGrid>("planarity" + suffix);
     grids.intensity = find<FloatGrid>("intensity" + suffix);
+    grids.label = find_integers("label" + suffix);
     grids.first_epoch = find_integers("first_epoch" + suffix);
     grids.last_epoch = find_integers("last_epoch" + suffix);
     check_all(grids);
@@ -145,6 +146,7 @@ class GridFinder {
     check(grids, grids.color.get());
     check(grids, grids.planarity.get());
     check(grids, grids.intensity.get());
+    check(grids, grids.label.get());
     check(grids, grids.first_epoch.get());
     check(grids, grids.last_epoch.get());
   }

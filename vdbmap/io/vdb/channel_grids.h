@@ -22,6 +22,7 @@ struct ChannelGrids {
   openvdb::Vec3SGrid::Ptr color;
   openvdb::FloatGrid::Ptr planarity;
   openvdb::FloatGrid::Ptr intensity;
+  openvdb::Int32Grid::Ptr label;
   openvdb::Int32Grid::Ptr first_epoch;
   openvdb::Int32Grid::Ptr last_epoch;
 };

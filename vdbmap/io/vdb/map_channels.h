@@ -18,7 +18,7 @@ struct ChannelOptions {
 
 /// Writes every attribute of every level as a standard grid, the coarser levels with the voxel size in the name:
 /// `density`, `count`, `mean` (offset from the voxel's centre [m]), `cov_diag`, `cov_offdiag`, `normal`, `planarity`,
-/// and where the map has them `color`, `intensity`, `first_epoch`, `last_epoch`. Throws IoError, and
+/// and where the map has them `color`, `intensity`, `label`, `first_epoch`, `last_epoch`. Throws IoError, and
 /// std::invalid_argument where a float cannot hold a whole number.
 void export_channels(const std::filesystem::path& path, const VoxelMap& map, const ChannelOptions& options = {});
 

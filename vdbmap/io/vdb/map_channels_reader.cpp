@@ -29,6 +29,7 @@ class LevelImport {
     VoxelAssembly assembly(grids_.voxel_size, grids_.count->activeVoxelCount());
     add_records(assembly);
     read_channel(grids_.intensity, assembly.channels().intensities);
+    read_channel(grids_.label, assembly.channels().labels);
     read_channel(grids_.first_epoch, assembly.channels().first_epochs);
     read_channel(grids_.last_epoch, assembly.channels().last_epochs);
     VoxelLevel level = assembly.finish();
@@ -112,7 +113,7 @@ class LevelImport {
 
 // Metadata of another program made complete: whole anchors may be integers there, and unknown ones are 0.
 openvdb::MetaMap complete_metadata(const openvdb::MetaMap& stated) {
-  openvdb::MetaMap metadata = metadata_of_frame(MapFrame());
+  openvdb::MetaMap metadata = metadata_of_map(VoxelMap());
   for (auto entry = stated.beginMeta(); entry != stated.endMeta(); ++entry) {
     const auto& [name, value] = *entry;
     const bool is_whole_anchor =
@@ -142,6 +143,7 @@ void check_levels_agree(const ChannelGrids& fine, const ChannelGrids& coarse, co
   };
   check_both("color", fine.color != nullptr, coarse.color != nullptr);
   check_both("intensity", fine.intensity != nullptr, coarse.intensity != nullptr);
+  check_both("label", fine.label != nullptr, coarse.label != nullptr);
   check_both("first_epoch", fine.first_epoch != nullptr, coarse.first_epoch != nullptr);
   check_both("last_epoch", fine.last_epoch != nullptr, coarse.last_epoch != nullptr);
 
@@ -166,6 +168,7 @@ VoxelMap import_channels(const std::filesystem::path& path) {
   const std::vector<ChannelGrids> levels = find_channel_grids(content, path);
   VoxelMap map;
   map.frame = read_frame(*content.metadata, path);
+  map.label_scheme = label_scheme_of_metadata(*content.metadata);
   map.has_color = levels.front().color != nullptr;
   for (const ChannelGrids& grids : levels) {
     map.levels.push_back(LevelImport(grids, path).level());

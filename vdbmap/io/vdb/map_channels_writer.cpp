@@ -3,6 +3,7 @@
 #include <memory>
 #include <stdexcept>
 #include <string>
+#include <type_traits>
 #include <vector>
 
 #include "vdbmap/io/vdb/channel_codes.h"
@@ -45,7 +46,7 @@ class LevelExport {
  private:
   void add(const std::string& name, const openvdb::GridBase::Ptr& grid) {
     grid->setName(name + suffix_);
-    grid->insertMeta(metadata_of_frame(map_.frame));
+    grid->insertMeta(metadata_of_map(map_));
     grid->insertMeta("voxel_size", openvdb::DoubleMetadata(level_.voxel_size()));
     grids_.push_back(grid);
   }
@@ -78,17 +79,16 @@ class LevelExport {
   }
 
   void add_optional_channels() {
-    const VoxelChannels& channels = level_.channels();
-    if (!channels.intensities.empty()) {
-      add("intensity",
-          make_channel_grid<openvdb::FloatGrid>(level_, [&](std::size_t i) { return channels.intensities[i]; }));
-    }
-    if (!channels.first_epochs.empty()) {
-      add_integers("first_epoch", [&](std::size_t i) { return channels.first_epochs[i]; });
-    }
-    if (!channels.last_epochs.empty()) {
-      add_integers("last_epoch", [&](std::size_t i) { return channels.last_epochs[i]; });
-    }
+    for_each_channel([&]<typename Value>(const char* name, std::vector<Value> VoxelChannels::*channel) {
+      const std::vector<Value>& values = level_.channels().*channel;
+      if (values.empty()) return;
+      const auto value_of = [&](std::size_t i) { return values[i]; };
+      if constexpr (std::is_integral_v<Value>) {
+        add_integers(name, value_of);
+      } else {
+        add(name, make_channel_grid<openvdb::FloatGrid>(level_, value_of));
+      }
+    });
   }
 
   const VoxelMap& map_;
@@ -106,7 +106,7 @@ void export_channels(const std::filesystem::path& path, const VoxelMap& map, con
   for (const VoxelLevel& level : map.levels) {
     for (const openvdb::GridBase::ConstPtr& grid : LevelExport(map, level, options).grids()) grids.push_back(grid);
   }
-  write_vdb(path, grids, metadata_of_frame(map.frame));
+  write_vdb(path, grids, metadata_of_map(map));
 }
 
 }  // namespace vdbmap

@@ -18,7 +18,7 @@ constexpr const char* kVoxelGridName = "voxels";
 void add_grid(openvdb::GridCPtrVec& grids, const openvdb::GridBase::Ptr& grid, const std::string& name,
               const VoxelMap& map, const VoxelLevel& level) {
   grid->setName(name);
-  grid->insertMeta(metadata_of_frame(map.frame));
+  grid->insertMeta(metadata_of_map(map));
   grid->insertMeta("voxel_size", openvdb::DoubleMetadata(level.voxel_size()));
   grids.push_back(grid);
 }
@@ -49,13 +49,14 @@ void save_map(const std::filesystem::path& path, const VoxelMap& map, const Save
   openvdb::initialize();
   openvdb::GridCPtrVec grids;
   for (const VoxelLevel& level : map.levels) add_level(grids, map, level, options);
-  write_vdb(path, grids, metadata_of_frame(map.frame));
+  write_vdb(path, grids, metadata_of_map(map));
 }
 
 VoxelMap load_map(const std::filesystem::path& path) {
   const VdbContent content = read_vdb(path);
   VoxelMap map;
   map.frame = frame_of_metadata(*content.metadata, path);
+  map.label_scheme = label_scheme_of_metadata(*content.metadata);
   for (const openvdb::GridBase::Ptr& grid : content.grids) {
     const auto voxels = openvdb::gridPtrCast<openvdb::points::PointDataGrid>(grid);
     if (!voxels || !voxels->getName().starts_with(kVoxelGridName)) continue;

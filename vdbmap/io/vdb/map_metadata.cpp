@@ -2,7 +2,9 @@
 #include "vdbmap/io/vdb/map_metadata.h"
 
 #include <array>
+#include <optional>
 #include <stdexcept>
+#include <string>
 
 #include "vdbmap/core/error.h"
 
@@ -12,10 +14,12 @@ namespace {
 constexpr std::array kAnchorNames = {"anchor_x", "anchor_y", "anchor_z"};
 constexpr const char* kFormatName = "map_format";
 constexpr const char* kEpsgName = "epsg";
+constexpr const char* kLabelSchemeName = "label_scheme";
 
 }  // namespace
 
-openvdb::MetaMap metadata_of_frame(const MapFrame& frame) {
+openvdb::MetaMap metadata_of_map(const VoxelMap& map) {
+  const MapFrame& frame = map.frame;
   openvdb::MetaMap metadata;
   metadata.insertMeta("creator", openvdb::StringMetadata("vdbmap"));
   metadata.insertMeta(kFormatName, openvdb::Int32Metadata(kMapFormat));
@@ -23,6 +27,9 @@ openvdb::MetaMap metadata_of_frame(const MapFrame& frame) {
     metadata.insertMeta(kAnchorNames[axis], openvdb::DoubleMetadata(frame.anchor[axis]));
   }
   if (frame.epsg) metadata.insertMeta(kEpsgName, openvdb::Int32Metadata(*frame.epsg));
+  if (map.label_scheme != LabelScheme::kUnknown) {
+    metadata.insertMeta(kLabelSchemeName, openvdb::StringMetadata(std::string(text_of(map.label_scheme))));
+  }
   return metadata;
 }
 
@@ -47,6 +54,11 @@ MapFrame frame_of_metadata(const openvdb::MetaMap& metadata, const std::filesyst
     throw IoError::malformed(path, error.what());
   }
   return frame;
+}
+
+LabelScheme label_scheme_of_metadata(const openvdb::MetaMap& metadata) {
+  const auto scheme = metadata.getMetadata<openvdb::StringMetadata>(kLabelSchemeName);
+  return (scheme ? label_scheme_of(scheme->value()) : std::nullopt).value_or(LabelScheme::kUnknown);
 }
 
 bool has_map_format(const openvdb::MetaMap& metadata) {

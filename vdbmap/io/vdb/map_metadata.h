@@ -11,11 +11,14 @@ namespace vdbmap {
 /// Version of our files; files of another one are refused. Version 1 had colours of 16-bit fixed point.
 inline constexpr std::int32_t kMapFormat = 2;
 
-/// Anchor, EPSG code, format and creator, as metadata of a file or a grid.
-openvdb::MetaMap metadata_of_frame(const MapFrame& frame);
+/// Anchor, EPSG code, label scheme, format and creator, as metadata of a file or a grid.
+openvdb::MetaMap metadata_of_map(const VoxelMap& map);
 
-/// Reads the same. Throws IoError where `metadata` is not of a map, or of a newer format.
+/// Reads anchor and EPSG code. Throws IoError where `metadata` is not of a map, or of a newer format.
 MapFrame frame_of_metadata(const openvdb::MetaMap& metadata, const std::filesystem::path& path);
+
+/// Reads the label scheme; unknown where nothing is said, or a name that we do not know.
+LabelScheme label_scheme_of_metadata(const openvdb::MetaMap& metadata);
 
 /// Whether the metadata is that of a map of ours.
 bool has_map_format(const openvdb::MetaMap& metadata);

@@ -18,6 +18,10 @@ using ShareArray =
 using FloatArray = openvdb::points::TypedAttributeArray<float>;
 using IntArray = openvdb::points::TypedAttributeArray<std::int32_t>;
 
+/// The type that holds the values of a channel.
+template <typename Value>
+using ChannelArray = openvdb::points::TypedAttributeArray<Value>;
+
 /// Writes codes as they are: OpenVDB's own encoders round down, so a value written and read back would drift.
 template <typename Array>
 class CodeWriter {

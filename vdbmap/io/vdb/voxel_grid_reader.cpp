@@ -3,6 +3,7 @@
 #include <numeric>
 #include <optional>
 #include <string>
+#include <vector>
 
 #include "vdbmap/core/error.h"
 #include "vdbmap/core/voxel_assembly.h"
@@ -14,21 +15,13 @@ namespace {
 
 namespace points = openvdb::points;
 
+constexpr const char* kColor = "Cd";
+
 // A voxel as the file gives it, in the order of the file.
 struct ReadVoxel {
   VoxelIndex index;
   VoxelKey key;
   VoxelRecord record;
-};
-
-// Which attributes a leaf has beyond the required ones: all leaves must agree.
-struct OptionalAttributes {
-  bool color = false;
-  bool intensity = false;
-  bool first_epoch = false;
-  bool last_epoch = false;
-
-  bool operator==(const OptionalAttributes&) const = default;
 };
 
 const points::AttributeArray* find_array(const PointLeaf& leaf, const char* name, const openvdb::NamePair& type) {
@@ -40,6 +33,16 @@ const points::AttributeArray* find_array(const PointLeaf& leaf, const char* name
   return usable ? array : nullptr;
 }
 
+// The attributes that a leaf has beyond the required ones.
+std::vector<std::string> optional_attributes(const PointLeaf& leaf) {
+  std::vector<std::string> names;
+  if (find_array(leaf, kColor, VectorArray::attributeType())) names.emplace_back(kColor);
+  for_each_channel([&]<typename Value>(const char* name, std::vector<Value> VoxelChannels::* /*channel*/) {
+    if (find_array(leaf, name, ChannelArray<Value>::attributeType())) names.emplace_back(name);
+  });
+  return names;
+}
+
 // Reads the leaves of one grid; every refusal names the grid and the attribute.
 class GridReader {
  public:
@@ -49,7 +52,7 @@ class GridReader {
     for (auto leaf = grid_.tree().cbeginLeaf(); leaf; ++leaf) {
       if (leaf->getLastValue() > 0) read_leaf(*leaf);
     }
-    return {assemble(), optional_.value_or(OptionalAttributes()).color};
+    return {assemble(), has_optional(kColor)};
   }
 
  private:
@@ -72,10 +75,16 @@ class GridReader {
     read_places(leaf, voxels);
     read_records(leaf, voxels);
     check_same_attributes(leaf);
-    if (optional_->color) read_color(leaf, voxels);
-    if (optional_->intensity) read_channel<FloatArray>(leaf, "intensity", channels_.intensities);
-    if (optional_->first_epoch) read_channel<IntArray>(leaf, "first_epoch", channels_.first_epochs);
-    if (optional_->last_epoch) read_channel<IntArray>(leaf, "last_epoch", channels_.last_epochs);
+    if (has_optional(kColor)) read_color(leaf, voxels);
+    for_each_channel([&]<typename Value>(const char* name, std::vector<Value> VoxelChannels::*channel) {
+      if (!has_optional(name)) return;
+      const auto codes = require<ChannelArray<Value>>(leaf, name);
+      for (std::size_t i = 0; i < voxels.size(); ++i) (channels_.*channel).push_back(codes[i]);
+    });
+  }
+
+  bool has_optional(const std::string& name) const {
+    return optional_ && std::ranges::find(*optional_, name) != optional_->end();
   }
 
   // The cell and the fixed-point position in it give the voxel and the mean within it.
@@ -117,25 +126,16 @@ class GridReader {
   }
 
   void check_same_attributes(const PointLeaf& leaf) {
-    const OptionalAttributes found{find_array(leaf, "Cd", VectorArray::attributeType()) != nullptr,
-                                   find_array(leaf, "intensity", FloatArray::attributeType()) != nullptr,
-                                   find_array(leaf, "first_epoch", IntArray::attributeType()) != nullptr,
-                                   find_array(leaf, "last_epoch", IntArray::attributeType()) != nullptr};
+    const std::vector<std::string> found = optional_attributes(leaf);
     if (optional_.value_or(found) != found) fail("has attributes that only some of its leaves have");
     optional_ = found;
   }
 
   void read_color(const PointLeaf& leaf, std::span<ReadVoxel> voxels) const {
-    const auto color = require<VectorArray>(leaf, "Cd");
+    const auto color = require<VectorArray>(leaf, kColor);
     for (std::size_t i = 0; i < voxels.size(); ++i) {
       set_color(voxels[i].record, {color[i].x(), color[i].y(), color[i].z()});
     }
-  }
-
-  template <typename Array, typename Value>
-  void read_channel(const PointLeaf& leaf, const char* name, std::vector<Value>& values) const {
-    const auto codes = require<Array>(leaf, name);
-    for (std::size_t i = 0; i < leaf.getLastValue(); ++i) values.push_back(codes[i]);
   }
 
   // From the order of cells into the order of voxels.
@@ -148,13 +148,11 @@ class GridReader {
     for (const std::uint32_t i : order) {
       if (!assembly.add(voxels_[i].index, voxels_[i].record)) fail("holds a voxel twice");
     }
-    const auto reorder = [&](const auto& values, auto& target) {
+    for_each_channel([&](const char* /*name*/, auto channel) {
+      const auto& values = channels_.*channel;
       if (values.empty()) return;
-      for (const std::uint32_t i : order) target.push_back(values[i]);
-    };
-    reorder(channels_.intensities, assembly.channels().intensities);
-    reorder(channels_.first_epochs, assembly.channels().first_epochs);
-    reorder(channels_.last_epochs, assembly.channels().last_epochs);
+      for (const std::uint32_t i : order) (assembly.channels().*channel).push_back(values[i]);
+    });
     return assembly.finish();
   }
 
@@ -162,7 +160,7 @@ class GridReader {
   const std::filesystem::path& path_;
   std::vector<ReadVoxel> voxels_;
   VoxelChannels channels_;
-  std::optional<OptionalAttributes> optional_;
+  std::optional<std::vector<std::string>> optional_;  // attributes that all leaves must have alike
 };
 
 }  // namespace

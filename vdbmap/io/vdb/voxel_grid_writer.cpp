@@ -32,9 +32,9 @@ points::AttributeSet::Descriptor::Ptr make_descriptor(const VoxelLevel& level, b
   append("N", NormalArray::attributeType());
   append("planarity", ShareArray::attributeType());
   if (has_color) append("Cd", VectorArray::attributeType());
-  if (!level.channels().intensities.empty()) append("intensity", FloatArray::attributeType());
-  if (!level.channels().first_epochs.empty()) append("first_epoch", IntArray::attributeType());
-  if (!level.channels().last_epochs.empty()) append("last_epoch", IntArray::attributeType());
+  for_each_channel([&]<typename Value>(const char* name, std::vector<Value> VoxelChannels::*channel) {
+    if (!(level.channels().*channel).empty()) append(name, ChannelArray<Value>::attributeType());
+  });
   return descriptor;
 }
 
@@ -109,12 +109,13 @@ void write_colors(PointLeaf& leaf, const std::vector<PlacedVoxel>& voxels, std::
   }
 }
 
-template <typename Array, typename Value>
-void write_channel(PointLeaf& leaf, const char* name, const std::vector<PlacedVoxel>& voxels,
-                   const std::vector<Value>& values) {
-  if (values.empty()) return;
-  CodeWriter<Array> codes(leaf, name);
-  for (std::size_t i = 0; i < voxels.size(); ++i) codes[i] = values[voxels[i].record];
+void write_channels(PointLeaf& leaf, const std::vector<PlacedVoxel>& voxels, const VoxelChannels& channels) {
+  for_each_channel([&]<typename Value>(const char* name, std::vector<Value> VoxelChannels::*channel) {
+    const std::vector<Value>& values = channels.*channel;
+    if (values.empty()) return;
+    CodeWriter<ChannelArray<Value>> codes(leaf, name);
+    for (std::size_t i = 0; i < voxels.size(); ++i) codes[i] = values[voxels[i].record];
+  });
 }
 
 // Cells that hold a voxel, as a tree whose leaves are then filled.
@@ -142,9 +143,7 @@ points::PointDataGrid::Ptr make_voxel_grid(const VoxelLevel& level, bool has_col
     leaf.setOffsets(offsets_of_cells(voxels));
     write_records(leaf, voxels, level.records());
     if (has_color) write_colors(leaf, voxels, level.records());
-    write_channel<FloatArray>(leaf, "intensity", voxels, level.channels().intensities);
-    write_channel<IntArray>(leaf, "first_epoch", voxels, level.channels().first_epochs);
-    write_channel<IntArray>(leaf, "last_epoch", voxels, level.channels().last_epochs);
+    write_channels(leaf, voxels, level.channels());
   });
   auto grid = points::PointDataGrid::create(tree);
   grid->setTransform(transform_of_level(level.voxel_size() * kVoxelsPerCell));

@@ -93,9 +93,9 @@ TEST_F(MapChannels, EveryAttributeHasItsGrid) {
     EXPECT_TRUE(grid->getMetadata<openvdb::DoubleMetadata>("anchor_y")) << grid->getName();
   }
   const std::map<std::string, std::string> expected = {
-      {"density", "float"},   {"count", "int32"},       {"mean", "vec3s"},      {"cov_diag", "vec3s"},
-      {"normal", "vec3s"},    {"cov_offdiag", "vec3s"}, {"planarity", "float"}, {"color", "vec3s"},
-      {"intensity", "float"}, {"first_epoch", "int32"}, {"last_epoch", "int32"}};
+      {"density", "float"},   {"count", "int32"},       {"mean", "vec3s"},       {"cov_diag", "vec3s"},
+      {"normal", "vec3s"},    {"cov_offdiag", "vec3s"}, {"planarity", "float"},  {"color", "vec3s"},
+      {"intensity", "float"}, {"first_epoch", "int32"}, {"last_epoch", "int32"}, {"label", "int32"}};
   for (const auto& [name, type] : expected) {
     EXPECT_EQ(type_of_name[name], type) << name;
     EXPECT_EQ(type_of_name[name + "_1m"], type) << name;

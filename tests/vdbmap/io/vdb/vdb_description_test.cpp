@@ -65,7 +65,7 @@ TEST_F(DescribeVdb, KnowsAMap) {
 TEST_F(DescribeVdb, StandardGridsWithTheMetadataOfAMapAreNoMap) {
   auto grid = openvdb::FloatGrid::create();
   grid->setName("voxels");
-  write_vdb(folder_ / "channels.vdb", {grid}, metadata_of_frame({}));
+  write_vdb(folder_ / "channels.vdb", {grid}, metadata_of_map({}));
   EXPECT_FALSE(describe_vdb(folder_ / "channels.vdb").is_map);
 }
 
