@@ -73,19 +73,27 @@ Json json_of(const VdbDescription& description, const std::filesystem::path& fil
   return {{"file", file.string()}, {"is_map", false}, {"metadata", json_of(description.metadata)}, {"grids", grids}};
 }
 
-ExitCode run(const InfoOptions& options, const CommonOptions& common) {
-  const VdbDescription description = describe_vdb(options.file);
-  if (description.is_map) {
-    const VoxelMap map = load_map(options.file);
-    if (common.json) {
-      print_json(json_of_map(map, options.file));
-    } else {
-      print_result(options.file.string() + ": a map of vdbmap\n" + text_of_map(map, options.file));
-    }
-  } else if (common.json) {
-    print_json(json_of(description, options.file));
+void tell_map(const VoxelMap& map, const std::filesystem::path& file, const CommonOptions& common) {
+  if (common.json) {
+    print_json(json_of_map(map, file));
   } else {
-    print_result(text_of(description, options.file));
+    print_result(file.string() + ": a map of vdbmap\n" + text_of_map(map, file));
+  }
+}
+
+void tell_foreign(const VdbDescription& description, const std::filesystem::path& file, const CommonOptions& common) {
+  if (common.json) {
+    print_json(json_of(description, file));
+  } else {
+    print_result(text_of(description, file));
+  }
+}
+
+ExitCode run(const InfoOptions& options, const CommonOptions& common) {
+  if (is_map_file(options.file)) {
+    tell_map(load_map(options.file), options.file, common);
+  } else {
+    tell_foreign(describe_vdb(options.file), options.file, common);
   }
   return ExitCode::kDone;
 }

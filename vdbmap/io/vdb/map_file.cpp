@@ -3,17 +3,21 @@
 
 #include <algorithm>
 #include <stdexcept>
+#include <string>
 
 #include "vdbmap/core/error.h"
 #include "vdbmap/io/vdb/map_grids.h"
 #include "vdbmap/io/vdb/map_metadata.h"
 #include "vdbmap/io/vdb/vdb_file.h"
+#include "vdbmap/io/vdb/vdb_outline.h"
 #include "vdbmap/io/vdb/voxel_grid.h"
 
 namespace vdbmap {
 namespace {
 
 constexpr const char* kVoxelGridName = "voxels";
+
+bool is_voxel_grid(const std::string& name) { return name.starts_with(kVoxelGridName); }
 
 void add_grid(openvdb::GridCPtrVec& grids, const openvdb::GridBase::Ptr& grid, const std::string& name,
               const VoxelMap& map, const VoxelLevel& level) {
@@ -52,14 +56,23 @@ void save_map(const std::filesystem::path& path, const VoxelMap& map, const Save
   write_vdb(path, grids, metadata_of_map(map));
 }
 
+bool is_map_file(const std::filesystem::path& path) {
+  const std::string points_type = openvdb::points::PointDataTree::treeType();
+  const bool has_voxels = std::ranges::any_of(read_vdb_outline(path).grids, [&](const VdbGridOutline& grid) {
+    return is_voxel_grid(grid.name) && grid.type == points_type;
+  });
+  return has_voxels && has_map_format(*read_vdb(path, [](const std::string&) { return false; }).metadata);
+}
+
 VoxelMap load_map(const std::filesystem::path& path) {
-  const VdbContent content = read_vdb(path);
+  // The fog beside the voxels takes more memory than they do, and tells nothing new.
+  const VdbContent content = read_vdb(path, is_voxel_grid);
   VoxelMap map;
   map.frame = frame_of_metadata(*content.metadata, path);
   map.label_scheme = label_scheme_of_metadata(*content.metadata);
   for (const openvdb::GridBase::Ptr& grid : content.grids) {
     const auto voxels = openvdb::gridPtrCast<openvdb::points::PointDataGrid>(grid);
-    if (!voxels || !voxels->getName().starts_with(kVoxelGridName)) continue;
+    if (!voxels) continue;
     ReadLevel read = read_voxel_grid(*voxels, path);
     map.has_color |= read.has_color;
     map.levels.push_back(std::move(read.level));

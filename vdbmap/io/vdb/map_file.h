@@ -17,6 +17,10 @@ struct SaveOptions {
 /// the voxel size in the name. Atomic; equal maps give equal bytes. Throws IoError.
 void save_map(const std::filesystem::path& path, const VoxelMap& map, const SaveOptions& options = {});
 
+/// Whether a .vdb file holds a map, which may still be damaged inside; reads no voxel of it. Throws IoError as
+/// load_map() does, but not for files of other programs.
+bool is_map_file(const std::filesystem::path& path);
+
 /// Reads what save_map() wrote. Throws IoError naming the file and the reason, also for .vdb files of other programs.
 VoxelMap load_map(const std::filesystem::path& path);
 

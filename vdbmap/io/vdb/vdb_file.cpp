@@ -94,9 +94,18 @@ void check_content(const std::filesystem::path& path) {
   }
 }
 
+openvdb::GridPtrVec read_some(openvdb::io::File& file, const GridFilter& is_wanted) {
+  openvdb::GridPtrVec grids;
+  for (auto name = file.beginName(); name != file.endName(); ++name) {
+    // Of several grids of one name, OpenVDB calls the second "name[1]".
+    if (is_wanted(name.gridName())) grids.push_back(file.readGrid(name.gridName()));
+  }
+  return grids;
+}
+
 }  // namespace
 
-VdbContent read_vdb(const std::filesystem::path& path) {
+VdbContent read_vdb(const std::filesystem::path& path, const GridFilter& is_wanted) {
   read_vdb_outline(path);
   check_content(path);
   openvdb::initialize();
@@ -104,7 +113,7 @@ VdbContent read_vdb(const std::filesystem::path& path) {
     openvdb::io::File file(path.string());
     file.open(/*delayLoad=*/false);
     VdbContent content;
-    content.grids = *file.getGrids();
+    content.grids = is_wanted ? read_some(file, is_wanted) : *file.getGrids();
     content.metadata = file.getMetadata();
     return content;
   } catch (const std::exception& error) {  // damage also ends in bad_alloc, and in messages of kilobytes

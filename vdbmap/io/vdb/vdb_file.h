@@ -2,6 +2,8 @@
 #pragma once
 
 #include <filesystem>
+#include <functional>
+#include <string>
 
 #include "vdbmap/io/vdb/standard_grids.h"
 
@@ -13,9 +15,12 @@ struct VdbContent {
   openvdb::MetaMap::Ptr metadata;
 };
 
-/// Reads a whole .vdb file. One that write_vdb() wrote is compared with its checksum first. Throws IoError for a file
-/// that is missing, is no .vdb file or is damaged.
-VdbContent read_vdb(const std::filesystem::path& path);
+/// Says by its name whether a grid is to be read.
+using GridFilter = std::function<bool(const std::string& name)>;
+
+/// Reads a .vdb file, without a filter all of it. One that write_vdb() wrote is compared with its checksum first.
+/// Throws IoError for a file that is missing, is no .vdb file or is damaged.
+VdbContent read_vdb(const std::filesystem::path& path, const GridFilter& is_wanted = {});
 
 /// Writes grids atomically, compressed as Houdini does (active values, Blosc). Equal content gives equal bytes: the
 /// random id that OpenVDB puts into every file is replaced by a checksum of the rest. Throws IoError.

@@ -105,8 +105,8 @@ VdbGridOutline read_grid(Walker& walker, std::uint32_t version) {
   VdbGridOutline grid;
   const std::string unique_name = walker.counted_text();
   grid.name = unique_name.substr(0, unique_name.find('\x1e'));  // a number follows where names repeat
-  walker.skip_counted();                                        // type
-  walker.skip_counted();                                        // the grid whose tree it shares
+  grid.type = walker.counted_text();
+  walker.skip_counted();  // the grid whose tree it shares
   const auto begin = walker.number<std::uint64_t>();
   const auto blocks = walker.number<std::uint64_t>();
   const auto end = walker.number<std::uint64_t>();

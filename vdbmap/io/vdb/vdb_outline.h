@@ -11,6 +11,7 @@ namespace vdbmap {
 /// Where a grid lies in a .vdb file, and how it is stored.
 struct VdbGridOutline {
   std::string name;
+  std::string type;               ///< of the tree, as OpenVDB names it: "Tree_float_5_4_3"
   std::uint32_t compression = 0;  ///< flags of openvdb::io; since file version 222
 };
 

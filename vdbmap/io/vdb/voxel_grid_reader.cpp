@@ -151,7 +151,9 @@ class GridReader {
     for_each_channel([&](const char* /*name*/, auto channel) {
       const auto& values = channels_.*channel;
       if (values.empty()) return;
-      for (const std::uint32_t i : order) (assembly.channels().*channel).push_back(values[i]);
+      auto& ordered = assembly.channels().*channel;
+      ordered.reserve(values.size());
+      for (const std::uint32_t i : order) ordered.push_back(values[i]);
     });
     return assembly.finish();
   }

@@ -60,6 +60,7 @@ TEST_F(DescribeVdb, KnowsAMap) {
   cloud.positions = {{1, 2, 3}};
   save_map(folder_ / "map.vdb", build_map(cloud));
   EXPECT_TRUE(describe_vdb(folder_ / "map.vdb").is_map);
+  EXPECT_TRUE(is_map_file(folder_ / "map.vdb"));
 }
 
 TEST_F(DescribeVdb, StandardGridsWithTheMetadataOfAMapAreNoMap) {
@@ -67,11 +68,13 @@ TEST_F(DescribeVdb, StandardGridsWithTheMetadataOfAMapAreNoMap) {
   grid->setName("voxels");
   write_vdb(folder_ / "channels.vdb", {grid}, metadata_of_map({}));
   EXPECT_FALSE(describe_vdb(folder_ / "channels.vdb").is_map);
+  EXPECT_FALSE(is_map_file(folder_ / "channels.vdb"));
 }
 
 TEST_F(DescribeVdb, OtherFilesAreRefused) {
   test::write_raw(folder_ / "text.vdb", "no grids here");
   EXPECT_EQ(test::io_error_of([&] { describe_vdb(folder_ / "text.vdb"); }), "text.vdb: is not an OpenVDB file");
+  EXPECT_EQ(test::io_error_of([&] { is_map_file(folder_ / "text.vdb"); }), "text.vdb: is not an OpenVDB file");
 }
 
 }  // namespace
