@@ -18,8 +18,8 @@ namespace {
 constexpr double kDegPerRad = 180 / std::numbers::pi;
 constexpr std::size_t kMaxSamples = 200'000;  // voxels looked at
 constexpr std::size_t kMaxFitSamples = 5'000;
-constexpr double kStrayShare = 0.02;     // of the voxels on each side, that may lie outside of the picture
-constexpr double kOutsideShare = 0.005;  // the same of an orbit, where the near end of a street is large
+constexpr double kStrayShare = 0.02;     // of the voxels on each side, that do not count as part of the scene
+constexpr double kOutsideShare = 0.005;  // the same where the map fills the picture
 constexpr double kOrbitFieldOfViewDeg = 35;
 constexpr double kOrbitElevationDeg = -33;
 constexpr double kStreetFieldOfViewDeg = 68;
@@ -74,12 +74,25 @@ void check_elevation(double elevation_deg) {
                               " degrees, expected -90 to 90");
 }
 
-Camera plan_camera(const SceneExtent& extent, const ImageSize& size, std::span<const double> numbers) {
+// The middle of most voxels on an axis, and how far they reach to either side [m].
+std::pair<double, double> middle_and_reach(const std::vector<Eigen::Vector3d>& points, int axis, double outside_share) {
+  const double low = quantile(points, axis, outside_share);
+  const double high = quantile(points, axis, 1 - outside_share);
+  return {(low + high) / 2, std::max(high - low, kMinExtent) / 2};
+}
+
+Camera plan_camera(const VoxelLevel& level, const SceneExtent& extent, const ImageSize& size,
+                   std::span<const double> numbers) {
   constexpr double kMargin = 1.06;
-  Eigen::Vector2d center = extent.box.center().head<2>();
-  const Eigen::Vector3d sizes = extent.box.sizes();
-  double width = kMargin * std::max(sizes.x(), sizes.y() * size.width / size.height);
-  if (!numbers.empty()) {
+  Eigen::Vector2d center;
+  double width = 0;
+  if (numbers.empty()) {
+    const std::vector<Eigen::Vector3d> points = some_voxels(level, kMaxSamples);
+    const auto [middle_x, reach_x] = middle_and_reach(points, 0, kOutsideShare);
+    const auto [middle_y, reach_y] = middle_and_reach(points, 1, kOutsideShare);
+    center = {middle_x, middle_y};
+    width = 2 * kMargin * std::max(reach_x, reach_y * size.width / size.height);
+  } else {
     check_count(numbers, 3, 3, "X,Y,WIDTH");
     center = {numbers[0], numbers[1]};
     width = numbers[2];
@@ -237,10 +250,9 @@ SceneExtent scene_extent(const VoxelLevel& level) {
   if (points.empty()) throw std::invalid_argument("the map has no voxels to look at");
   SceneExtent extent;
   for (int axis = 0; axis < 3; ++axis) {
-    const double middle = (quantile(points, axis, kStrayShare) + quantile(points, axis, 1 - kStrayShare)) / 2;
-    const double half = std::max(quantile(points, axis, 1 - kStrayShare) - middle, kMinExtent / 2);
-    extent.box.min()[axis] = middle - half;
-    extent.box.max()[axis] = middle + half;
+    const auto [middle, reach] = middle_and_reach(points, axis, kStrayShare);
+    extent.box.min()[axis] = middle - reach;
+    extent.box.max()[axis] = middle + reach;
   }
   extent.heading_deg = principal_heading_deg(points, extent.box);
   return extent;
@@ -249,7 +261,7 @@ SceneExtent scene_extent(const VoxelLevel& level) {
 Camera choose_camera(const VoxelLevel& level, View view, const ImageSize& size, std::span<const double> numbers,
                      std::span<const Eigen::Vector3d> path) {
   const SceneExtent extent = scene_extent(level);
-  if (view == View::kPlan) return plan_camera(extent, size, numbers);
+  if (view == View::kPlan) return plan_camera(level, extent, size, numbers);
   if (view == View::kOrbit) return orbit_camera(level, extent, size, numbers);
   return perspective_camera(level, extent, size, numbers, path);
 }

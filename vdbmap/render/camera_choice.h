@@ -26,10 +26,14 @@ struct SceneExtent {
 SceneExtent scene_extent(const VoxelLevel& level);
 
 /// The camera of a view. `numbers` says which, in the local frame; without any it is chosen so that the picture is
-/// good: plan:        x, y of the middle, width of the picture [m] perspective: x, y, z of the eye [m], heading (to the
-/// left of the x axis), elevation [deg][, field of view [deg]] orbit:       heading, elevation [deg][, distance from
-/// the middle of the map [m]] With a `path` [m], the perspective follows it. Throws std::invalid_argument for another
-/// count and impossible numbers.
+/// good.
+///
+/// * plan: x and y of the middle, width of the picture [m]
+/// * perspective: x, y, z of the eye [m], heading (to the left of the x axis), elevation [deg][, field of view [deg]]
+/// * orbit: heading, elevation [deg][, distance from the middle of the map [m]]
+///
+/// With a `path` [m], the perspective follows it. Throws std::invalid_argument for another count and impossible
+/// numbers.
 Camera choose_camera(const VoxelLevel& level, View view, const ImageSize& size, std::span<const double> numbers = {},
                      std::span<const Eigen::Vector3d> path = {});
 

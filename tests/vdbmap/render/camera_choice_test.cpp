@@ -61,6 +61,16 @@ TEST_P(OrbitFrom, TheMapFillsThePictureAndLiesInItsMiddle) {
   }
 }
 
+TEST(PlanCamera, TheMapFillsThePictureAndLiesInItsMiddle) {
+  const VoxelMap map = long_street();
+  for (const ImageSize& size : {ImageSize{1920, 1080}, ImageSize{400, 900}}) {
+    const Framing framing = framing_of(map.finest(), choose_camera(map.finest(), View::kPlan, size));
+    EXPECT_GT(framing.share_shown, 0.99);
+    EXPECT_LT((framing.box.center() - Eigen::Vector2d(0.5, 0.5)).cwiseAbs().maxCoeff(), 0.02);
+    EXPECT_GT(framing.box.sizes().maxCoeff(), 0.9);
+  }
+}
+
 INSTANTIATE_TEST_SUITE_P(, OrbitFrom,
                          testing::Values(std::vector<double>{}, std::vector<double>{0, -40},
                                          std::vector<double>{200, -20}, std::vector<double>{90, -80}));
