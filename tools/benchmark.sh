@@ -202,6 +202,35 @@ measure_scaling() {
   rm -rf "$results/copies" "$results/copies.vdb"
 }
 
+# The middle one of three runs [s] of a command in the environment of the first argument.
+time_command() {
+  local environment=$1
+  shift
+  for _ in 1 2 3; do
+    env "$environment" /usr/bin/time --quiet --format %e --output "$results/time.txt" "$build/bin/vdbmap" "$@" > /dev/null
+    cat "$results/time.txt"
+  done | sort -n | sed -n 2p
+}
+
+# Whole commands on a simulated street, and what huge pages save them.
+measure_commands() {
+  local street=$results/street map=$results/street.vdb command
+  vdbmap simulate "$street" --seed 1
+  vdbmap build "$street/epoch0/cloud.las" -o "$map"
+  local commands=(
+    "build $street/epoch0/cloud.las -o $results/again.vdb"
+    "info $map"
+    "render $map -o $results/street.png"
+    "localize $map $street/epoch1/scans -o $results/street.txt"
+  )
+  for command in "${commands[@]}"; do
+    # shellcheck disable=SC2086 # words of a command
+    row "vdbmap ${command%% *}, simulated street" "$(time_command LC_ALL=C $command) s" \
+      "$(time_command MALLOC_CONF=thp:never $command) s without huge pages of jemalloc"
+  done
+  rm -rf "$street" "$map" "$results/again.vdb"
+}
+
 build_all
 mkdir -p "$results"
 : > "$table"
@@ -220,6 +249,7 @@ tabulate_fine
 tabulate_odometry
 tabulate_coarse
 tabulate_pictures
+measure_commands
 if [[ -n $data ]]; then
   measure_accuracy
   measure_scaling

@@ -126,24 +126,33 @@ TEST_F(Labels, RenderDrawsClassesInTheirColorsWithALegend) {
 }
 
 TEST_F(Labels, FilesThatDoNotFitAreToldInOneLineAndLeaveNoMap) {
-  std::vector<std::string> arguments = labelled_scans();
-  arguments.insert(arguments.begin(), "build");
-  arguments.insert(arguments.end(), {"-o", path("map.vdb")});
+  labelled_scans();
+  const auto build_with = [&](const std::string& labels) {
+    return vdbmap({"build", path("scans"), "--labels", labels, "-o", path("map.vdb")});
+  };
   test::write_raw(folder_ / "labels" / "1.label", std::string(12, '\0'));
-  expect_error(vdbmap(arguments), ExitCode::kBadInput, "1.label: has labels of 3 points, the scan has ");
+  expect_error(build_with(path("labels")), ExitCode::kBadInput, "1.label: has labels of 3 points, the scan has ");
   test::write_raw(folder_ / "labels" / "1.label", "12345");
-  expect_error(vdbmap(arguments), ExitCode::kBadInput, "1.label");
+  expect_error(build_with(path("labels")), ExitCode::kBadInput, "1.label");
   std::filesystem::remove(folder_ / "labels" / "1.label");
-  expect_error(vdbmap(arguments), ExitCode::kBadInput, "1.label: is missing, the labels of ");
-  arguments[5] = path("none");
-  expect_error(vdbmap(arguments), ExitCode::kWrongUsage, "--labels names a file, but there are 2 scans");
+  expect_error(build_with(path("labels")), ExitCode::kInputOutputFailed, "1.label: cannot open");
+  expect_error(build_with(path("none")), ExitCode::kInputOutputFailed, "none: cannot open");
+  expect_error(build_with(path("labels/0.label")), ExitCode::kWrongUsage, "cannot hold the labels of both");
   const std::string cloud = ply("a.ply", scan(1));
-  expect_error(vdbmap({"build", cloud, "--labels", path("none"), "-o", path("map.vdb")}), ExitCode::kBadInput, "none");
   expect_error(vdbmap({"build", cloud, "--label-scheme", "mine", "-o", path("map.vdb")}), ExitCode::kWrongUsage,
                "--label-scheme");
   label(cloud, "a.label");
   expect_error(vdbmap({"build", cloud, "--labels", path("a.label"), "-o", path("a.label")}), ExitCode::kWrongUsage,
                "is an input too");
+  std::filesystem::create_directories(folder_ / "folder");
+  label(cloud, "folder/a.label");
+  expect_error(vdbmap({"build", cloud, "--labels", path("folder"), "-o", path("folder/a.label")}),
+               ExitCode::kWrongUsage, "is an input too");
+  EXPECT_EQ(read_labels(folder_ / "folder" / "a.label").size(), read_points(cloud).cloud.size());
+  std::filesystem::create_directories(folder_ / "other");
+  std::filesystem::copy_file(cloud, folder_ / "other" / "a.ply");
+  expect_error(vdbmap({"build", cloud, path("other/a.ply"), "--labels", path("folder"), "-o", path("map.vdb")}),
+               ExitCode::kWrongUsage, "cannot hold the labels of both");
   EXPECT_FALSE(std::filesystem::exists(path("map.vdb")));
 }
 
@@ -153,7 +162,25 @@ TEST_F(Labels, MapsOfOtherSchemesAreNotMerged) {
   build({cloud, "--labels", path("a.label")}, "a.vdb");
   build({cloud, "--labels", path("a.label"), "--label-scheme", "asprs"}, "b.vdb");
   expect_error(vdbmap({"merge", path("a.vdb"), path("b.vdb"), "-o", path("c.vdb")}), ExitCode::kBadInput,
-               "labels of semantickitti and of asprs");
+               "has labels of asprs, a map before it of semantickitti");
+  PointCloud unknown = scan(1);
+  unknown.labels.assign(unknown.size(), 3);
+  build({ply("unknown.ply", unknown)}, "unknown.vdb");
+  // The order does not matter.
+  for (const std::vector<std::string>& order :
+       {std::vector<std::string>{"a", "unknown", "b"}, {"unknown", "a", "b"}, {"a", "b", "unknown"}}) {
+    std::vector<std::string> arguments = {"merge"};
+    for (const std::string& name : order) arguments.push_back(path(name + ".vdb"));
+    arguments.insert(arguments.end(), {"-o", path("c.vdb")});
+    expect_error(vdbmap(arguments), ExitCode::kBadInput, "labels of ");
+  }
+}
+
+TEST_F(Labels, ASchemeForFilesWithoutLabelsIsWarnedOf) {
+  const CommandResult result =
+      vdbmap({"build", ply("a.ply", scan(1)), "--label-scheme", "asprs", "-o", path("map.vdb")});
+  EXPECT_EQ(result.exit_code, 0);
+  EXPECT_NE(result.err.find("the files hold no labels"), std::string::npos) << result.err;
 }
 
 }  // namespace

@@ -132,10 +132,21 @@ MapFromFiles build(const std::vector<MapInput>& inputs, const BuildOptions& buil
   return build_map_from_files(inputs, options);
 }
 
-void warn(const MapFromFiles& built) {
+std::vector<std::filesystem::path> label_files(const std::vector<MapInput>& inputs) {
+  std::vector<std::filesystem::path> files;
+  for (const MapInput& input : inputs) {
+    if (input.labels) files.push_back(*input.labels);
+  }
+  return files;
+}
+
+void warn(const MapFromFiles& built, const std::string& label_scheme) {
   for (const ForeignUnit& unit : built.foreign_units) {
     spdlog::warn("{}: its unit is {} m, but its coordinates are taken as metres", unit.file.string(),
                  unit.metres_per_unit);
+  }
+  if (!label_scheme.empty() && built.map.finest().channels().labels.empty()) {
+    spdlog::warn("--label-scheme {}: the files hold no labels", label_scheme);
   }
   if (built.epsg_of_files && built.epsg_of_files != built.map.frame.epsg) {
     spdlog::warn("the files are in EPSG:{}, the map says EPSG:{}", *built.epsg_of_files, *built.map.frame.epsg);
@@ -182,9 +193,10 @@ ExitCode run(const BuildCommandOptions& options, const CommonOptions& common) {
   check_output(options.output.file, read_files);
   std::vector<MapInput> inputs = choose_inputs(list_scans(files), options.selection, options.poses);
   if (options.labels) add_label_files(inputs, *options.labels);
+  check_output(options.output.file, label_files(inputs));
 
   const MapFromFiles built = build(inputs, checked_options, options.label_scheme, common);
-  warn(built);
+  warn(built, options.label_scheme);
   save_map(options.output.file, built.map, options.output.save);
   const std::chrono::duration<double> elapsed = std::chrono::steady_clock::now() - start;
   print(built, options.output.file, inputs, elapsed.count(), common.json);

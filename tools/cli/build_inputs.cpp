@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "tools/cli/build_inputs.h"
 
+#include <cerrno>
+#include <map>
 #include <stdexcept>
 #include <string>
 #include <system_error>
@@ -37,6 +39,11 @@ std::vector<MapInput> with_poses(const std::vector<ScanPlace>& scans, const std:
   return inputs;
 }
 
+void require_existing(const std::filesystem::path& path) {
+  std::error_code error;
+  if (!std::filesystem::exists(path, error)) throw IoError::system(path, "cannot open", error ? error.value() : ENOENT);
+}
+
 }  // namespace
 
 std::vector<MapInput> choose_inputs(const std::vector<ScanPlace>& scans, const ScanSelection& selection,
@@ -52,20 +59,19 @@ std::vector<MapInput> choose_inputs(const std::vector<ScanPlace>& scans, const S
 }
 
 void add_label_files(std::vector<MapInput>& inputs, const std::filesystem::path& labels) {
-  const bool is_folder = std::filesystem::is_directory(labels);
-  if (!is_folder && inputs.size() > 1) {
-    throw std::invalid_argument(
-        fmt::format("--labels names a file, but there are {} scans: expected a folder with a "
-                    ".label file for each",
-                    inputs.size()));
-  }
+  require_existing(labels);
+  std::error_code error;
+  const bool is_folder = std::filesystem::is_directory(labels, error);
+  std::map<std::filesystem::path, std::filesystem::path> scan_of_labels;
   for (MapInput& input : inputs) {
+    const std::filesystem::path& scan = input.scan.file;
     if (input.scan.turn) throw std::invalid_argument(input.scan.name() + ": no label file can belong to a turn");
-    input.labels = is_folder ? labels / input.scan.file.filename().replace_extension(".label") : labels;
-    std::error_code error;
-    if (!std::filesystem::exists(*input.labels, error)) {
-      throw IoError::malformed(*input.labels, "is missing, the labels of " + input.scan.file.string());
-    }
+    input.labels = is_folder ? labels / scan.filename().replace_extension(".label") : labels;
+    require_existing(*input.labels);
+    const auto [first, is_new] = scan_of_labels.emplace(*input.labels, scan);
+    if (is_new) continue;
+    throw std::invalid_argument(fmt::format("{}: cannot hold the labels of both {} and {}", input.labels->string(),
+                                            first->second.string(), scan.string()));
   }
 }
 

@@ -17,8 +17,8 @@ std::vector<MapInput> choose_inputs(const std::vector<ScanPlace>& scans, const S
                                     const std::optional<std::filesystem::path>& poses);
 
 /// Gives each scan its .label file: `labels` itself for a single one, else NAME.label in the folder `labels` for the
-/// scan file NAME.*. Throws IoError where one is missing, and std::invalid_argument for turns of a capture, and for one
-/// file for several scans.
+/// scan file NAME.*. Throws IoError where one is missing, and std::invalid_argument for turns of a capture, and where
+/// several scans would share a file.
 void add_label_files(std::vector<MapInput>& inputs, const std::filesystem::path& labels);
 
 }  // namespace vdbmap::cli

@@ -30,8 +30,9 @@ struct ExportCommandOptions {
 
 void add_options(CLI::App& app, ExportCommandOptions& options) {
   app.add_option("MAP", options.map, "The map")->type_name("FILE")->required();
-  auto* points = app.add_option("OUT", options.points,
-                                "Write one point a voxel to this .ply, .las (classes in ASPRS's numbers) or .xyz file");
+  auto* points =
+      app.add_option("OUT", options.points,
+                     "Write one point a voxel to this .ply, .las (known classes in ASPRS's numbers) or .xyz file");
   auto* channels = app.add_option("--channels", options.channels, "Write each attribute as a grid to this .vdb file");
   points->type_name("FILE")->excludes(channels);
   channels->type_name("FILE");

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include <filesystem>
+#include <optional>
 #include <stdexcept>
 #include <string>
 #include <vector>
@@ -32,8 +33,7 @@ void add_options(CLI::App& app, MergeOptions& options) {
 }
 
 // Maps that do not fit together are bad input, not wrong usage: the message names the file.
-VoxelMap merge_next(const VoxelMap& merged, const std::filesystem::path& file) {
-  const VoxelMap next = load_map(file);
+VoxelMap merge_next(const VoxelMap& merged, const VoxelMap& next, const std::filesystem::path& file) {
   try {
     return merge_maps(merged, next);
   } catch (const std::invalid_argument& error) {
@@ -43,12 +43,26 @@ VoxelMap merge_next(const VoxelMap& merged, const std::filesystem::path& file) {
   }
 }
 
+// Merged maps of which one did not say its scheme do not say theirs: so all schemes are compared, whatever the order.
+void check_scheme(const VoxelMap& map, const std::filesystem::path& file, std::optional<LabelScheme>& known) {
+  if (map.label_scheme == LabelScheme::kUnknown) return;
+  if (known.value_or(map.label_scheme) != map.label_scheme) {
+    throw IoError::malformed(
+        file, fmt::format("has labels of {}, a map before it of {}", text_of(map.label_scheme), text_of(*known)));
+  }
+  known = map.label_scheme;
+}
+
 VoxelMap merge_files(const std::vector<std::filesystem::path>& files, const CommonOptions& common) {
   Progress progress("merging maps", files.size(), common);
   VoxelMap merged = load_map(files.front());
+  std::optional<LabelScheme> known_scheme;
+  check_scheme(merged, files.front(), known_scheme);
   progress.advance();
   for (std::size_t i = 1; i < files.size(); ++i) {
-    merged = merge_next(merged, files[i]);
+    const VoxelMap next = load_map(files[i]);
+    check_scheme(next, files[i], known_scheme);
+    merged = merge_next(merged, next, files[i]);
     progress.advance();
   }
   return merged;

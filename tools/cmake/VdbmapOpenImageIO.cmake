@@ -1,4 +1,4 @@
-# What only the module that draws pictures and the tests link to.
+# What only the module that writes pictures links to.
 # Debian's config of OpenImageIO lists a folder of OpenCV's headers, which need not be there.
 find_package(OpenImageIO REQUIRED CONFIG)
 foreach(property INTERFACE_INCLUDE_DIRECTORIES INTERFACE_SYSTEM_INCLUDE_DIRECTORIES)

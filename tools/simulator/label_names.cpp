@@ -1,27 +1,18 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "tools/simulator/label_names.h"
 
+#include "vdbmap/core/label_scheme.h"
+
 namespace vdbmap::simulator {
 
-const std::vector<std::pair<SurfaceClass, std::string_view>>& label_names() {
+std::vector<std::pair<SurfaceClass, std::string>> label_names() {
   using enum SurfaceClass;
-  static const std::vector<std::pair<SurfaceClass, std::string_view>> kNames = {
-      {kCar, "car"},
-      {kBicycle, "bicycle"},
-      {kPerson, "person"},
-      {kRoad, "road"},
-      {kParking, "parking"},
-      {kPavement, "sidewalk"},
-      {kBuilding, "building"},
-      {kFence, "fence"},
-      {kVegetation, "vegetation"},
-      {kTrunk, "trunk"},
-      {kTerrain, "terrain"},
-      {kPole, "pole"},
-      {kTrafficSign, "traffic-sign"},
-      {kOtherObject, "other-object"},
-  };
-  return kNames;
+  std::vector<std::pair<SurfaceClass, std::string>> names;
+  for (const SurfaceClass label : {kCar, kBicycle, kPerson, kRoad, kParking, kPavement, kBuilding, kFence, kVegetation,
+                                   kTrunk, kTerrain, kPole, kTrafficSign, kOtherObject}) {
+    names.emplace_back(label, label_name(LabelScheme::kSemanticKitti, static_cast<int>(label)));
+  }
+  return names;
 }
 
 }  // namespace vdbmap::simulator

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #pragma once
 
-#include <string_view>
+#include <string>
 #include <utility>
 #include <vector>
 
@@ -10,6 +10,6 @@
 namespace vdbmap::simulator {
 
 /// All classes with SemanticKITTI's names, in the order of their numbers.
-const std::vector<std::pair<SurfaceClass, std::string_view>>& label_names();
+std::vector<std::pair<SurfaceClass, std::string>> label_names();
 
 }  // namespace vdbmap::simulator

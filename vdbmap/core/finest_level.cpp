@@ -14,12 +14,12 @@ namespace vdbmap {
 namespace {
 
 // Adds some blocks of the points, in parallel.
-void add_blocks(VoxelBlocks& blocks, const SortedPoints& points, const std::vector<std::size_t>& numbers) {
+void add_blocks(VoxelBlocks& blocks, const SortedPoints& points, const std::vector<std::size_t>& block_numbers) {
   std::vector<BlockContent*> targets;
-  for (const std::size_t i : numbers) targets.push_back(&blocks[points.block(i)]);
-  parallel_for(numbers.size(), [&](std::size_t i) {
-    targets[i]->sums = merge_blocks(std::move(targets[i]->sums), points.fold(numbers[i]));
-    targets[i]->votes = merge_votes(targets[i]->votes, points.votes(numbers[i]));
+  for (const std::size_t i : block_numbers) targets.push_back(&blocks[points.block(i)]);
+  parallel_for(block_numbers.size(), [&](std::size_t i) {
+    targets[i]->sums = merge_blocks(std::move(targets[i]->sums), points.fold(block_numbers[i]));
+    targets[i]->votes = merge_votes(targets[i]->votes, points.votes(block_numbers[i]));
   });
 }
 
@@ -95,7 +95,7 @@ class LevelMaker {
   }
 
   std::vector<std::unique_ptr<VoxelLeaf>> make_block(const BlockSource& source) {
-    VoxelMaker maker(*this, source);
+    BlockMaker maker(*this, source);
     if (source.content) {
       const BlockSums voxels = std::move(source.content->sums);  // freed as soon as they are converted
       for (const KeyedSums& voxel : voxels) maker.add(voxel.key, voxel.sums);
@@ -108,17 +108,17 @@ class LevelMaker {
   }
 
   // Makes the voxels of one block, which come in the order of their keys.
-  class VoxelMaker {
+  class BlockMaker {
    public:
-    VoxelMaker(LevelMaker& level, const BlockSource& source)
+    BlockMaker(LevelMaker& level, const BlockSource& source)
         : level_(level),
           block_(source.block),
           record_(source.first_record),
           leaves_(source.block),
           votes_(source.content ? std::move(source.content->votes) : level.points_->votes(source.in_points)),
           election_(votes_) {}
-    VoxelMaker(const VoxelMaker&) = delete;
-    VoxelMaker& operator=(const VoxelMaker&) = delete;
+    BlockMaker(const BlockMaker&) = delete;
+    BlockMaker& operator=(const BlockMaker&) = delete;
 
     void add(KeyInBlock key, const VoxelSums& sums) {
       VoxelChannels& channels = level_.channels_;

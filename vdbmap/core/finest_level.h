@@ -21,7 +21,7 @@ struct BlockContent {
 
 using VoxelBlocks = std::map<BlockKey, BlockContent>;
 
-/// Adds points.
+/// Adds the sums and votes of the points to their blocks.
 void add_points(VoxelBlocks& blocks, const SortedPoints& points);
 
 /// What the finest level is like, beside its voxels.
@@ -33,7 +33,7 @@ struct FinestLevelOptions {
 };
 
 /// The level of all blocks, without normals. The last points, if any, are added on the way: where nothing else is in a
-/// block of theirs, its records are made straight from them, and no sums (144 bytes a voxel) are stored.
+/// block of theirs, its records are made straight from them, and no sums (136 bytes a voxel) are stored.
 VoxelLevel make_finest_level(VoxelBlocks blocks, const SortedPoints* last_points, const FinestLevelOptions& options);
 
 }  // namespace vdbmap

@@ -5,6 +5,7 @@
 #include <vector>
 
 #include <tbb/blocked_range.h>
+#include <tbb/enumerable_thread_specific.h>
 #include <tbb/global_control.h>
 #include <tbb/parallel_for.h>
 #include <tbb/parallel_sort.h>
@@ -26,6 +27,16 @@ void parallel_ranges(std::size_t count, std::size_t grain, const Body& body) {
   tbb::parallel_for(tbb::blocked_range<std::size_t>(0, count, grain),
                     [&](const auto& range) { body(range.begin(), range.end()); });
 }
+
+/// Working memory that bodies running at the same time do not share. A body must not depend on what is left in it.
+template <typename Value>
+class PerThread {
+ public:
+  Value& mine() { return values_.local(); }
+
+ private:
+  tbb::enumerable_thread_specific<Value> values_;
+};
 
 /// Sorts by an order in which no two values are equal; so the result is the same for any number of threads.
 template <typename Value, typename Less>

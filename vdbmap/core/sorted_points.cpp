@@ -9,8 +9,6 @@
 #include <unordered_map>
 #include <utility>
 
-#include <tbb/enumerable_thread_specific.h>
-
 #include "vdbmap/core/parallel.h"
 #include "vdbmap/core/srgb.h"
 
@@ -143,7 +141,7 @@ void sort_by_digit(std::span<const KeyedPoint> from, KeyedPoint* to, int shift, 
   for (const KeyedPoint& point : from) to[place[point.key >> shift & mask]++] = point;
 }
 
-// `scratch` has room for as many points.
+// `scratch` grows where it has less room.
 void sort_by_key(std::span<KeyedPoint> points, LargeVector<KeyedPoint>& scratch) {
   constexpr std::size_t kFewPoints = 512;
   if (points.size() < kFewPoints) {
@@ -223,10 +221,10 @@ SortedPoints::SortedPoints(const PointCloud& cloud, std::size_t begin, std::size
 
 void SortedPoints::sort_voxels() {
   num_voxels_.resize(num_blocks());
-  tbb::enumerable_thread_specific<LargeVector<KeyedPoint>> scratch;
+  PerThread<LargeVector<KeyedPoint>> scratch;
   parallel_for(num_blocks(), [&](std::size_t i) {
     const std::span points = std::span(points_).subspan(first_point_[i], first_point_[i + 1] - first_point_[i]);
-    sort_by_key(points, scratch.local());
+    sort_by_key(points, scratch.mine());
     num_voxels_[i] = count_voxels(points);
   });
 }

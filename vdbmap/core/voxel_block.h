@@ -78,6 +78,8 @@ struct KeyedSums {
   VoxelSums sums;
 };
 
+static_assert(sizeof(KeyedSums) == 136);
+
 /// Occupied voxels of one block, sorted by key.
 using BlockSums = std::vector<KeyedSums>;
 

@@ -25,7 +25,7 @@ std::vector<PointLabel> read_labels(const std::filesystem::path& path);
 /// Throws IoError naming both counts where it has not.
 void attach_labels(ReadResult& read, const std::filesystem::path& path);
 
-/// Writes it. Throws IoError.
+/// Writes the same format. Throws IoError.
 void write_labels(const std::filesystem::path& path, const std::vector<PointLabel>& labels);
 
 }  // namespace vdbmap

@@ -21,17 +21,21 @@ Rgb16 srgb_of(const VoxelRecord& record) {
   return {srgb_from_linear(linear.x()), srgb_from_linear(linear.y()), srgb_from_linear(linear.z())};
 }
 
-// Classes as clouds have them; nothing where one does not fit there.
 std::vector<std::uint16_t> point_labels(const std::vector<std::int32_t>& labels) {
   const auto fits = [](std::int32_t label) { return label >= 0 && label <= std::numeric_limits<std::uint16_t>::max(); };
-  if (!std::ranges::all_of(labels, fits)) return {};
-  return {labels.begin(), labels.end()};
+  std::vector<std::uint16_t> codes;
+  codes.reserve(labels.size());
+  for (const std::int32_t label : labels) codes.push_back(static_cast<std::uint16_t>(fits(label) ? label : kNoLabel));
+  return codes;
 }
 
 void make_las_labels(std::vector<std::uint16_t>& labels, LabelScheme scheme) {
-  constexpr std::uint16_t kHighestLasLabel = 31;
-  for (std::uint16_t& label : labels) label = static_cast<std::uint16_t>(asprs_label(scheme, label));
-  if (std::ranges::any_of(labels, [](std::uint16_t label) { return label > kHighestLasLabel; })) labels.clear();
+  constexpr std::int32_t kHighestLasLabel = 31;
+  constexpr std::uint16_t kUnclassified = 1;
+  for (std::uint16_t& label : labels) {
+    const std::int32_t in_las = asprs_label(scheme, label);
+    label = in_las <= kHighestLasLabel ? static_cast<std::uint16_t>(in_las) : kUnclassified;
+  }
 }
 
 }  // namespace

@@ -11,7 +11,7 @@
 namespace vdbmap {
 
 /// One point a voxel, in the order of the records: the mean in the original system, colour, intensity and label where
-/// the map has them; no labels where one does not fit a cloud's 16 bits.
+/// the map has them; a label that does not fit a cloud's 16 bits is none.
 PointCloud points_of_level(const VoxelMap& map, const VoxelLevel& level);
 
 /// The format of a point file to be written: PLY, LAS or XYZ. Throws std::invalid_argument for any other extension.
@@ -23,7 +23,8 @@ void write_points(const std::filesystem::path& path, const PointCloud& cloud,
                   const std::optional<int>& epsg = std::nullopt);
 
 /// Writes points_of_level() in the format of the extension. LAS with the EPSG code and with classes of ASPRS's numbers
-/// (asprs_label()), or none where one is above the 31 that LAS 1.2 has room for. Throws IoError, and
+/// (asprs_label()), as far as the map knows whose its own are; one above the 31 that LAS 1.2 has room for becomes 1,
+/// unclassified. Throws IoError, and
 /// std::invalid_argument as export_format() and write_las() do.
 void export_points(const std::filesystem::path& path, const VoxelMap& map, const VoxelLevel& level);
 

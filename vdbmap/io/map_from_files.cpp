@@ -29,22 +29,30 @@ void note_epsg(MapFromFiles& result, const std::filesystem::path& file, const st
   result.epsg_of_files = epsg;
 }
 
-// One file that does not say whose numbers its labels are is enough for nobody to know.
-void note_scheme(MapFromFiles& result, const std::filesystem::path& file, LabelScheme scheme) {
-  const LabelScheme before = result.scheme_of_files.value_or(scheme);
-  const bool are_known = scheme != LabelScheme::kUnknown && before != LabelScheme::kUnknown;
-  if (are_known && scheme != before) {
-    throw IoError::malformed(
-        file, "has labels of " + std::string(text_of(scheme)) + ", files before it of " + std::string(text_of(before)));
+// What the files say of their labels.
+class SchemeNotes {
+ public:
+  void note(const std::filesystem::path& file, LabelScheme scheme) {
+    has_unknown_ |= scheme == LabelScheme::kUnknown;
+    if (scheme != LabelScheme::kUnknown && known_.value_or(scheme) != scheme) {
+      throw IoError::malformed(file, "has labels of " + std::string(text_of(scheme)) + ", files before it of " +
+                                         std::string(text_of(*known_)));
+    }
+    if (scheme != LabelScheme::kUnknown) known_ = scheme;
   }
-  result.scheme_of_files = are_known ? scheme : LabelScheme::kUnknown;
-}
+
+  // One file that does not say whose numbers its labels are is enough for nobody to know.
+  LabelScheme of_all() const { return has_unknown_ ? LabelScheme::kUnknown : known_.value_or(LabelScheme::kUnknown); }
+
+ private:
+  std::optional<LabelScheme> known_;
+  bool has_unknown_ = false;
+};
 
 void note(MapFromFiles& result, const MapInput& input, const ReadResult& read) {
   result.num_points += read.cloud.size();
   result.num_dropped += read.dropped.size();
   if (read.metres_per_unit != 1.0) result.foreign_units.push_back({input.scan.file, read.metres_per_unit});
-  if (!read.cloud.labels.empty()) note_scheme(result, input.scan.file, read.label_scheme);
   if (!input.map_from_scan) note_epsg(result, input.scan.file, read.epsg);
 }
 
@@ -76,14 +84,15 @@ MapFromFiles build_map_from_files(const std::vector<MapInput>& inputs, const Map
   if (inputs.empty()) throw std::invalid_argument("no scans to build a map from");
   MapBuilder builder(options.build);
   MapFromFiles result;
+  SchemeNotes schemes;
   ScanReader reader;
   std::future<ReadResult> next = start_reading(reader, inputs.front(), options.reads_ahead);
   for (std::size_t i = 0; i < inputs.size(); ++i) {
-    ReadResult read = next.get();
+    const ReadResult read = next.get();
     const bool is_last = i + 1 == inputs.size();
     if (!is_last) next = start_reading(reader, inputs[i + 1], options.reads_ahead);
-    if (options.label_scheme) read.label_scheme = *options.label_scheme;
     note(result, inputs[i], read);
+    if (!read.cloud.labels.empty()) schemes.note(inputs[i].scan.file, options.label_scheme.value_or(read.label_scheme));
     if (is_last) {
       result.map = finish(builder, inputs[i], read.cloud);
     } else {
@@ -91,7 +100,7 @@ MapFromFiles build_map_from_files(const std::vector<MapInput>& inputs, const Map
     }
     options.on_scan_done();
   }
-  result.map.label_scheme = result.scheme_of_files.value_or(LabelScheme::kUnknown);
+  result.map.label_scheme = schemes.of_all();
   if (!result.map.frame.epsg) result.map.frame.epsg = result.epsg_of_files;
   return result;
 }

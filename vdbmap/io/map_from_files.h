@@ -17,9 +17,10 @@ namespace vdbmap {
 /// A scan and where its points lie.
 struct MapInput {
   ScanPlace scan;
-  std::optional<Eigen::Isometry3d> map_from_scan = std::nullopt;  ///< nothing: the points are in map coordinates
-  std::optional<std::filesystem::path> labels =
-      std::nullopt;  ///< .label file of its points' classes, instead of its own labels
+  /// Nothing: the points are in map coordinates.
+  std::optional<Eigen::Isometry3d> map_from_scan = std::nullopt;
+  /// The .label file of its points' classes, which count instead of its own labels.
+  std::optional<std::filesystem::path> labels = std::nullopt;
 };
 
 struct MapFromFilesOptions {
@@ -39,10 +40,9 @@ struct ForeignUnit {
 struct MapFromFiles {
   VoxelMap map;
   std::size_t num_points = 0;
-  std::size_t num_dropped = 0;                 ///< points with a coordinate that is not finite
-  std::optional<int> epsg_of_files;            ///< of the files in map coordinates, where one says so
-  std::optional<LabelScheme> scheme_of_files;  ///< of the files with labels; unknown where one does not say
-  std::vector<ForeignUnit> foreign_units;      ///< taken as they are, as if in metres
+  std::size_t num_dropped = 0;             ///< points with a coordinate that is not finite
+  std::optional<int> epsg_of_files;        ///< of the files in map coordinates, where one says so
+  std::vector<ForeignUnit> foreign_units;  ///< taken as they are, as if in metres
 };
 
 /// The map of all points in the scans. At most two scans are in memory at once. Throws IoError naming the scan

@@ -98,6 +98,12 @@ std::uint16_t saturate(double number) {
   return number < 65535.0 ? static_cast<std::uint16_t>(number + 0.5) : std::uint16_t{65535};
 }
 
+// As in .label files, where the class is in the lower half of 32 bits and the thing's own number in the upper one.
+std::uint16_t label_of(double number) {
+  const bool has_upper_half = number > 65535.0 && number < 4294967296.0;
+  return has_upper_half ? static_cast<std::uint16_t>(static_cast<std::uint32_t>(number) & 0xffff) : saturate(number);
+}
+
 Rgb16 unpack_rgb(double number) {
   const bool fits = number >= 0 && number < 4294967296.0;
   const std::uint32_t bits = fits ? static_cast<std::uint32_t>(number) : 0;
@@ -166,7 +172,7 @@ void store_numbers(PointCloud& cloud, const PointField& field, std::size_t first
     case FieldRole::kRing:
       return store([&](std::size_t i, double number) { cloud.rings[i] = saturate(number); });
     case FieldRole::kLabel:
-      return store([&](std::size_t i, double number) { cloud.labels[i] = saturate(number); });
+      return store([&](std::size_t i, double number) { cloud.labels[i] = label_of(number); });
   }
 }
 

@@ -130,7 +130,7 @@ double centered_eye(const std::vector<Eigen::Vector3d>& points, int axis, double
 //
 // In the frame of the camera's axes, an eye (a, c) sees the points (x, z) with |x - a| <= t (z - c), where t is the
 // tangent of half the field of view. So a - t c >= x - t z and -a - t c >= -x - t z for all of them, and the largest of
-// the right sides give the nearest c.
+// the right sides give the nearest c; for balls of radius r around the points they grow by r sqrt(1 + t^2).
 Camera fitting_orbit(const VoxelLevel& level, double heading_deg, double elevation_deg, const ImageSize& size) {
   constexpr double kMargin = 0.03;  // of the picture, on each side
   const Eigen::Matrix3d map_from_axes =
@@ -140,10 +140,11 @@ Camera fitting_orbit(const VoxelLevel& level, double heading_deg, double elevati
 
   const double tangent = (1 - 2 * kMargin) * std::tan(kOrbitFieldOfViewDeg / 2 / kDegPerRad);
   const Eigen::Vector2d tangents(tangent, tangent * size.height / size.width);
+  const double radius = std::sqrt(3.0) / 2 * level.voxel_size();
   const auto farthest = [&](int axis, double sign) {
     std::vector<double> values;
     for (const Eigen::Vector3d& point : points) values.push_back(sign * point[axis] - tangents[axis] * point.z());
-    return quantile_of(values, 1 - kOutsideShare);
+    return quantile_of(std::move(values), 1 - kOutsideShare) + radius * std::hypot(1, tangents[axis]);
   };
   Eigen::Vector3d eye(0, 0, std::numeric_limits<double>::infinity());
   for (const int axis : {0, 1}) {

@@ -6,8 +6,6 @@
 #include <span>
 #include <utility>
 
-#include "vdbmap/render/color_scale.h"
-
 namespace vdbmap {
 namespace {
 
@@ -62,13 +60,24 @@ std::span<const LabelColor> colors_of(LabelScheme scheme) {
   return {};
 }
 
+// A colour of its own for each number, neither dark nor pale; multiples of ten, as many schemes have them, differ too.
+Rgb8 mixed_color(std::uint32_t number) {
+  std::uint32_t bits = number * 0x9e3779b1u;
+  bits = (bits ^ bits >> 15) * 0x85ebca6bu;
+  bits ^= bits >> 13;
+  const auto channel = [&](int shift) {
+    return static_cast<std::uint8_t>(0x30 + (bits >> shift & 0xff) * 0xb0 / 0xff);
+  };
+  return {channel(0), channel(8), channel(16)};
+}
+
 }  // namespace
 
 Rgb8 label_color(LabelScheme scheme, std::int32_t label) {
   if (label == kNoLabel) return kNoClass;
   const std::span<const LabelColor> colors = colors_of(scheme);
   const auto found = std::ranges::find(colors, label, &LabelColor::first);
-  return found == colors.end() ? category_color(static_cast<std::size_t>(label)) : found->second;
+  return found == colors.end() ? mixed_color(static_cast<std::uint32_t>(label)) : found->second;
 }
 
 }  // namespace vdbmap

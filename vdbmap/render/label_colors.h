@@ -9,7 +9,7 @@
 namespace vdbmap {
 
 /// The colour of a class in pictures: near what one expects of it (vegetation is green) and apart from that of other
-/// classes which lie beside it. Labels without a name in their scheme get one of category_color().
+/// classes which lie beside it. Labels without a name in their scheme get one that their number chooses.
 Rgb8 label_color(LabelScheme scheme, std::int32_t label);
 
 }  // namespace vdbmap

@@ -124,7 +124,10 @@ std::vector<std::pair<std::string, Rgb8>> names_of(const std::vector<PathOverlay
 // Paths that lie on each other are all seen: the first is drawn last, and each one after it is a border to those
 // before.
 void draw_paths(VoxelView& view, const Camera& camera, const std::vector<PathOverlay>& paths, double width) {
-  for (std::size_t i = paths.size(); i-- > 0;) draw_path(view, camera, paths[i], static_cast<double>(1 + i) * width);
+  constexpr std::size_t kMaxBorders = 3;  // wider paths would cover the map
+  for (std::size_t i = paths.size(); i-- > 0;) {
+    draw_path(view, camera, paths[i], static_cast<double>(1 + std::min(i, kMaxBorders)) * width);
+  }
 }
 
 bool is_in_voxel(const VoxelLevel& level, const Camera& camera) {

@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <functional>
 #include <map>
 #include <set>
 #include <stdexcept>
@@ -19,6 +20,7 @@ constexpr double kLowShare = 0.01;  // of the values, that may lie outside of th
 constexpr double kHighShare = 0.98;
 constexpr std::size_t kMaxEpochs = 10;  // in the legend
 constexpr std::size_t kMaxLabels = 20;
+constexpr Rgb8 kOthers = rgb8(0xffffff);
 
 void check_known(bool is_known, const char* asked_for, const char* missing) {
   if (is_known) return;
@@ -87,13 +89,17 @@ std::vector<std::pair<std::string, Rgb8>> epoch_entries(const std::vector<std::i
 std::vector<std::pair<std::string, Rgb8>> label_entries(LabelScheme scheme, const std::vector<std::int32_t>& labels) {
   std::map<std::int32_t, std::size_t> counts;
   for (const std::int32_t label : labels) ++counts[label];
-  while (counts.size() > kMaxLabels) {
-    counts.erase(std::ranges::min_element(counts, {}, [](const auto& entry) { return entry.second; }));
-  }
+  std::vector<std::pair<std::int32_t, std::size_t>> shown(counts.begin(), counts.end());
+  std::ranges::stable_sort(shown, std::ranges::greater(), &std::pair<std::int32_t, std::size_t>::second);
+  shown.resize(std::min(shown.size(), kMaxLabels));
+  std::ranges::sort(shown);
+
   std::vector<std::pair<std::string, Rgb8>> entries;
-  for (const auto& [label, count] : counts) {
+  for (const auto& [label, count] : shown) {
     entries.emplace_back(label_name(scheme, label), label_color(scheme, label));
   }
+  const std::size_t num_others = counts.size() - shown.size();
+  if (num_others > 0) entries.emplace_back("and " + std::to_string(num_others) + " others", kOthers);
   return entries;
 }
 

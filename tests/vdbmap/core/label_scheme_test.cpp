@@ -20,7 +20,7 @@ TEST(LabelScheme, LabelsHaveTheNamesOfTheirScheme) {
   EXPECT_EQ(label_name(LabelScheme::kAsprs, 6), "building");
   EXPECT_EQ(label_name(LabelScheme::kAsprs, 40), "class 40");
   EXPECT_EQ(label_name(LabelScheme::kSemanticKitti, 40), "road");
-  EXPECT_EQ(label_name(LabelScheme::kSemanticKitti, 252), "moving car");
+  EXPECT_EQ(label_name(LabelScheme::kSemanticKitti, 252), "moving-car");
   EXPECT_EQ(label_name(LabelScheme::kSemanticKitti, 2), "class 2");
   EXPECT_EQ(label_name(LabelScheme::kUnknown, 40), "class 40");
   EXPECT_EQ(label_name(LabelScheme::kUnknown, -1), "class -1");

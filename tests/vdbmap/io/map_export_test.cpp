@@ -98,5 +98,18 @@ TEST_F(MapExport, ChoosesTheFormatByTheExtensionInAnyCase) {
   EXPECT_FALSE(std::filesystem::exists(folder_ / "a.laz"));
 }
 
+TEST_F(MapExport, LabelsAreWrittenAsFarAsAFormatHasRoomForThem) {
+  PointCloud cloud;
+  cloud.positions = {{0.05, 0, 0}, {1.05, 0, 0}, {2.05, 0, 0}, {3.05, 0, 0}};
+  cloud.labels = {0, 31, 40, 50};
+  VoxelMap map = build_map(cloud, test::anchored({0, 0, 0}));
+  using Labels = std::vector<std::uint16_t>;
+  EXPECT_EQ(exported("points.ply", map, map.finest()).labels, (Labels{0, 31, 40, 50}));
+  EXPECT_EQ(exported("points.las", map, map.finest()).labels, (Labels{0, 31, 1, 1}));
+  map.label_scheme = LabelScheme::kSemanticKitti;
+  EXPECT_EQ(exported("points.las", map, map.finest()).labels, (Labels{0, 1, 11, 6}));
+  EXPECT_EQ(exported("points.xyz", map, map.finest()).labels, (Labels{0, 31, 40, 50}));
+}
+
 }  // namespace
 }  // namespace vdbmap

@@ -111,6 +111,10 @@ TEST_F(MapFromFilesTest, LasFilesAndLabelFilesSayWhoseNumbersTheirLabelsAre) {
               build_map_from_files({whole_file("a.las"), input});
             }),
             "a.las: has labels of semantickitti, files before it of asprs");
+  EXPECT_EQ(io_error_of([&] {
+              build_map_from_files({whole_file("a.las"), ply_input, input});
+            }),
+            "a.las: has labels of semantickitti, files before it of asprs");
 }
 
 TEST_F(MapFromFilesTest, AnEpsgCodeOfTheOptionsComesFirst) {

