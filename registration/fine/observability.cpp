@@ -3,7 +3,9 @@
 
 #include <algorithm>
 #include <array>
+#include <cmath>
 #include <cstdio>
+#include <numbers>
 #include <numeric>
 
 #include <Eigen/Eigenvalues>
@@ -33,15 +35,15 @@ std::string describe(const Vector6d& motion) {
   return text.data();
 }
 
-// How fast the sum of weighted distances turns with the motion. A kernel that gives up on far points bends the other
-// way there: where that outweighs the rest, the weights stand in.
-Matrix6d curvature(std::span<const PlaneMatch> matches, std::span<const double> weights, std::span<const double> slopes,
-                   const Eigen::Isometry3d& map_from_scan) {
+// What tells how fast the sum of weighted distances turns with the motion. A kernel that gives up on far points bends
+// the other way there: where that outweighs the rest, the weights stand in.
+std::span<const double> curving_weights(std::span<const PlaneMatch> matches, std::span<const double> weights,
+                                        std::span<const double> slopes, const Eigen::Isometry3d& map_from_scan) {
   constexpr double kLeastShare = 0.25;
   const Matrix6d of_weights = information(matches, weights, map_from_scan);
   const Matrix6d of_slopes = information(matches, slopes, map_from_scan);
   const Eigen::LDLT<Matrix6d> excess(of_slopes - kLeastShare * of_weights);
-  return excess.isPositive() ? of_slopes : of_weights;
+  return excess.isPositive() ? slopes : weights;
 }
 
 // Squares of weight times distance, as far as the match did not draw the scan to itself: by the leverage h of each
@@ -60,11 +62,63 @@ std::vector<double> squared_pulls_of(std::span<const PlaneMatch> matches, std::s
   return squared_pulls;
 }
 
+// What the matches of one of the directions in which a scanner turns say: measured at one time, mostly on one thing.
+struct Sector {
+  Vector6d pull = Vector6d::Zero();         // sum of weight times distance times sensitivity
+  Matrix6d information = Matrix6d::Zero();  // share in the sum of all
+};
+
+std::vector<Sector> sectors_of(std::span<const PlaneMatch> matches, std::span<const double> weights,
+                               std::span<const double> curving, const Eigen::Isometry3d& map_from_scan) {
+  constexpr std::size_t kNumSectors = 36;
+  std::array<Sector, kNumSectors> all;
+  std::array<bool, kNumSectors> is_used{};
+  const std::vector<double> distances = plane_distances(matches, map_from_scan);
+  for (std::size_t i = 0; i < matches.size(); ++i) {
+    const double turn = std::atan2(matches[i].point.y(), matches[i].point.x()) / (2 * std::numbers::pi) + 0.5;
+    const auto number = std::min(static_cast<std::size_t>(turn * kNumSectors), kNumSectors - 1);
+    const Vector6d row = sensitivity_to_motion(matches[i], map_from_scan);
+    all[number].pull += weights[i] * distances[i] * row;
+    all[number].information += curving[i] * row * row.transpose();
+    is_used[number] = true;
+  }
+  std::vector<Sector> used;
+  for (std::size_t i = 0; i < kNumSectors; ++i) {
+    if (is_used[i]) used.push_back(all[i]);
+  }
+  return used;
+}
+
+// The spread of the motions that the scan would make without one sector after the other: so errors that belong together
+// count as one, as they do where the scanner was elsewhere at that time than deskewing thinks, or a surface is not the
+// plane it is taken for.
+Matrix6d jackknife_covariance(std::span<const Sector> sectors, const Matrix6d& bread_and_prior) {
+  Matrix6d covariance = Matrix6d::Zero();
+  for (const Sector& sector : sectors) {
+    const Vector6d motion = (bread_and_prior - sector.information).ldlt().solve(sector.pull);
+    covariance += motion * motion.transpose();
+  }
+  const auto count = static_cast<double>(sectors.size());
+  return (count - 1) / count * covariance;
+}
+
+// A covariance, and in directions in which another is wider, that one, if it is so on the whole: of 36 sums the spread
+// is known to a quarter only, which is too little to correct a covariance that is nearly right.
+Matrix6d widened(const Matrix6d& covariance, const Matrix6d& other) {
+  constexpr double kClearRatio = 3;
+  const Eigen::GeneralizedSelfAdjointEigenSolver<Matrix6d> solver(other, covariance);
+  if (solver.info() != Eigen::Success || solver.eigenvalues().mean() < kClearRatio) return covariance;
+  const Matrix6d basis = covariance * solver.eigenvectors();  // V^-T, as V^T C V = 1
+  const Matrix6d wide = basis * solver.eigenvalues().cwiseMax(1.0).asDiagonal() * basis.transpose();
+  return 0.5 * (wide + wide.transpose());
+}
+
 }  // namespace
 
 Matrix6d motion_covariance(std::span<const PlaneMatch> matches, std::span<const double> weights,
                            std::span<const double> slopes, const Eigen::Isometry3d& map_from_scan) {
-  const Matrix6d bread = curvature(matches, weights, slopes, map_from_scan);
+  const std::span<const double> curving = curving_weights(matches, weights, slopes, map_from_scan);
+  const Matrix6d bread = information(matches, curving, map_from_scan);
   const std::vector<double> squared_pulls = squared_pulls_of(matches, weights, map_from_scan);
   const Matrix6d filling = information(matches, squared_pulls, map_from_scan);
 
@@ -76,8 +130,14 @@ Matrix6d motion_covariance(std::span<const PlaneMatch> matches, std::span<const 
   const double noise = std::max(filling.trace() / std::max(bread.trace(), 1e-12), kMinNoise);
   const Matrix6d prior = (noise * prior_variance.cwiseInverse()).asDiagonal();
   const Matrix6d inverse = (bread + prior).ldlt().solve(Matrix6d::Identity());
-  const Matrix6d covariance = inverse * (filling + noise * prior) * inverse;
-  return 0.5 * (covariance + covariance.transpose());
+  const Matrix6d sandwich = inverse * (filling + noise * prior) * inverse;
+  const Matrix6d covariance = 0.5 * (sandwich + sandwich.transpose());
+
+  constexpr std::size_t kLeastSectors = 18;  // of fewer, and of few matches each, the spread tells too little
+  constexpr std::size_t kLeastMatches = 20;
+  const std::vector<Sector> sectors = sectors_of(matches, weights, curving, map_from_scan);
+  if (sectors.size() < kLeastSectors || matches.size() < kLeastMatches * sectors.size()) return covariance;
+  return widened(covariance, jackknife_covariance(sectors, bread + prior));
 }
 
 std::vector<UnobservableDirection> unobservable_directions(std::span<const PlaneMatch> matches,

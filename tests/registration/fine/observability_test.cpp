@@ -1,7 +1,10 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "registration/fine/observability.h"
 
+#include <algorithm>
+#include <array>
 #include <cmath>
+#include <numbers>
 #include <random>
 
 #include <Eigen/Eigenvalues>
@@ -156,6 +159,35 @@ TEST(MotionCovariance, AgreesWithMonteCarloForUnequalNoise) {
     // A variance of 400 samples is known to sqrt(2 / 400) = 7 %; four times that.
     EXPECT_NEAR(sum_of_covariances(i, i) / sum_of_squares(i, i), 1, 0.28) << i;
   }
+}
+
+// Moves the points of each of 36 sectors off their planes together, and each a little by itself.
+Matches with_noise_of_sectors(Matches exact, double sigma, std::mt19937& random) {
+  std::normal_distribution<double> normal(0, sigma);
+  std::array<double, 36> of_sector;
+  for (double& offset : of_sector) offset = normal(random);
+  for (PlaneMatch& match : exact.matches) {
+    const double turn = std::atan2(match.point.y(), match.point.x()) / (2 * std::numbers::pi) + 0.5;
+    const double offset = of_sector[std::min(static_cast<std::size_t>(turn * 36), std::size_t{35})];
+    match.point += exact.map_from_scan.linear().transpose() * ((offset + 0.1 * normal(random)) * match.normal);
+  }
+  return exact;
+}
+
+TEST(MotionCovariance, CountsErrorsThatBelongTogetherAsOne) {
+  constexpr int kTrials = 200;
+  const Matches exact = exact_matches(test::room(), 300, inside());
+  std::mt19937 random(5);
+  double chi_squared = 0;
+  for (int i = 0; i < kTrials; ++i) {
+    const Matches noisy = with_noise_of_sectors(exact, 0.005, random);
+    const Vector6d error = solved(noisy);
+    const Matrix6d covariance = motion_covariance(noisy.matches, noisy.weights, moved_by(noisy.map_from_scan, error));
+    chi_squared += error.dot(covariance.ldlt().solve(error));
+  }
+  // Taken one by one, some fifty points a sector would make it fifty times 6. Of 36 sums it is known roughly only.
+  EXPECT_LT(chi_squared / kTrials, 2 * 6);
+  EXPECT_GT(chi_squared / kTrials, 0.4 * 6);
 }
 
 TEST(MotionCovariance, IsThatOfTheGuessesAlongACorridor) {
