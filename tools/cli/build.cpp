@@ -20,6 +20,7 @@
 #include "tools/cli/number_list.h"
 #include "tools/cli/output.h"
 #include "tools/cli/progress.h"
+#include "tools/cli/reading.h"
 #include "tools/cli/scan_selection.h"
 #include "vdbmap/io/map_from_files.h"
 #include "vdbmap/io/point_reader.h"
@@ -41,6 +42,7 @@ struct BuildCommandOptions {
   std::optional<std::int32_t> epoch;
   std::optional<std::filesystem::path> labels;
   std::string label_scheme;
+  ReadOptions read;
   MapOutput output;
 };
 
@@ -87,6 +89,7 @@ void add_options(CLI::App& app, BuildCommandOptions& options) {
   add_scan_selection(app, options.selection);
   add_map_options(app, options);
   add_label_options(app, options);
+  add_read_options(app, options.read);
   add_map_output(app, options.output);
 }
 
@@ -122,11 +125,12 @@ BuildOptions build_options(const BuildCommandOptions& options) {
 }
 
 MapFromFiles build(const std::vector<MapInput>& inputs, const BuildOptions& build_options,
-                   const std::string& label_scheme, const CommonOptions& common) {
+                   const BuildCommandOptions& command, const CommonOptions& common) {
   Progress progress("building from scans", inputs.size(), common);
   MapFromFilesOptions options;
   options.build = build_options;
-  options.label_scheme = label_scheme_of(label_scheme);
+  options.label_scheme = label_scheme_of(command.label_scheme);
+  options.read = command.read;
   options.reads_ahead = common.num_threads != 1;
   options.on_scan_done = [&progress] { progress.advance(); };
   return build_map_from_files(inputs, options);
@@ -153,6 +157,12 @@ void warn(const MapFromFiles& built, const std::string& label_scheme) {
   }
 }
 
+ReadingReport reading_report(const MapFromFiles& built) {
+  ReadingReport report;
+  for (const FileFinding& found : built.findings) report.add(found.file, found.finding);
+  return report;
+}
+
 std::size_t count_files(const std::vector<MapInput>& inputs) {
   std::set<std::filesystem::path> files;
   for (const MapInput& input : inputs) files.insert(input.scan.file);
@@ -166,13 +176,14 @@ std::string text_of_counts(std::size_t num_scans, std::size_t num_files) {
 }
 
 void print(const MapFromFiles& built, const std::filesystem::path& file, const std::vector<MapInput>& inputs,
-           double seconds, bool as_json) {
+           const ReadingReport& reading, double seconds, bool as_json) {
   const std::size_t num_files = count_files(inputs);
   if (as_json) {
     nlohmann::ordered_json json = json_of_map(built.map, file);
     json["files"] = num_files;
     json["scans"] = inputs.size();
     json["dropped_points"] = built.num_dropped;
+    json["findings"] = reading.json();
     json["seconds"] = seconds;
     return print_json(json);
   }
@@ -195,11 +206,13 @@ ExitCode run(const BuildCommandOptions& options, const CommonOptions& common) {
   if (options.labels) add_label_files(inputs, *options.labels);
   check_output(options.output.file, label_files(inputs));
 
-  const MapFromFiles built = build(inputs, checked_options, options.label_scheme, common);
+  const MapFromFiles built = build(inputs, checked_options, options, common);
   warn(built, options.label_scheme);
+  const ReadingReport reading = reading_report(built);
+  reading.warn();
   save_map(options.output.file, built.map, options.output.save);
   const std::chrono::duration<double> elapsed = std::chrono::steady_clock::now() - start;
-  print(built, options.output.file, inputs, elapsed.count(), common.json);
+  print(built, options.output.file, inputs, reading, elapsed.count(), common.json);
   return ExitCode::kDone;
 }
 

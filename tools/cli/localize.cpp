@@ -14,6 +14,7 @@
 #include "tools/cli/localize_report.h"
 #include "tools/cli/map_output.h"
 #include "tools/cli/output.h"
+#include "tools/cli/reading.h"
 #include "tools/cli/scan_selection.h"
 #include "vdbmap/core/error.h"
 #include "vdbmap/io/point_reader.h"
@@ -32,6 +33,7 @@ struct LocalizeCommandOptions {
   std::string format = "kitti";
   ScanSelection selection;
   registration::LocalizerOptions localizer;
+  ReadOptions read{.is_in_sensor_frame = true};
 };
 
 void add_search_options(CLI::App& app, LocalizeCommandOptions& options, CLI::Option* initial) {
@@ -75,6 +77,7 @@ void add_options(CLI::App& app, LocalizeCommandOptions& options) {
                  "Share of the points that must lie on the map for a scan to count as found, [0.3]")
       ->check(CLI::Range(0.0, 1.0).description(""))
       ->type_name("SHARE");
+  add_read_options(app, options.read);
   add_scan_selection(app, options.selection);
 }
 
@@ -120,9 +123,11 @@ Localized localize(const std::vector<ScanPlace>& scans, const LocalizeCommandOpt
   if (!reason.empty()) throw IoError::malformed(options.map, reason);
   std::vector<double> times = given ? given->times : std::vector<double>();
   if (options.initial) {
-    return {localize_from_guesses(scans, map, *given, options.localizer.fine, options.localizer.found, common), times};
+    return {localize_from_guesses(scans, map, *given, options.localizer.fine, options.localizer.found, options.read,
+                                  common),
+            times};
   }
-  return {localize_without_guess(scans, map, given, options.localizer, common), times};
+  return {localize_without_guess(scans, map, given, options.localizer, options.read, common), times};
 }
 
 ExitCode run(const LocalizeCommandOptions& options, const CommonOptions& common) {

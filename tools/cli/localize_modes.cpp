@@ -50,27 +50,36 @@ LocalizeReport follow_motion(const std::vector<ScanPlace>& scans, const Eigen::I
 
 LocalizeReport localize_from_guesses(const std::vector<ScanPlace>& scans, const VoxelMap& map,
                                      const Trajectory& guesses, const registration::FineOptions& fine,
-                                     const registration::FoundCriteria& criteria, const CommonOptions& common) {
-  ScanReader reader;
+                                     const registration::FoundCriteria& criteria, const ReadOptions& read,
+                                     const CommonOptions& common) {
+  ScanReader reader(read);
+  ReadingReport reading;
   const Localize localize = [&](const ScanPlace& scan, const Eigen::Isometry3d& guess) {
-    return registration::localize_scan(reader.read(scan).cloud, map, guess, fine, criteria);
+    const ReadResult result = reader.read(scan);
+    reading.add(scan.file, result.findings);
+    return registration::localize_scan(result.cloud, map, guess, fine, criteria);
   };
   Progress progress("localizing scans", scans.size(), common);
-  if (guesses.size() != 1) return localize_each(scans, guesses, localize, progress);
-  return follow_motion(scans, guesses.map_from_scan.front().value(), localize, progress);
+  LocalizeReport report = guesses.size() != 1
+                              ? localize_each(scans, guesses, localize, progress)
+                              : follow_motion(scans, guesses.map_from_scan.front().value(), localize, progress);
+  report.reading = std::move(reading);
+  return report;
 }
 
 LocalizeReport localize_without_guess(const std::vector<ScanPlace>& scans, const VoxelMap& map,
                                       const std::optional<Trajectory>& odometry,
-                                      const registration::LocalizerOptions& options, const CommonOptions& common) {
+                                      const registration::LocalizerOptions& options, const ReadOptions& read,
+                                      const CommonOptions& common) {
   registration::OdometryOptions odometry_options;
   odometry_options.range = options.fine.range;
   registration::SequenceLocalizer localizer(map, options, odometry_options);
   Progress progress("localizing scans", scans.size(), common);
-  ScanReader reader;
+  ScanReader reader(read);
+  LocalizeReport report;
   for (std::size_t i = 0; i < scans.size(); ++i) {
     std::string reason;
-    std::optional<PointCloud> scan = read_scan(reader, scans[i], reason);
+    std::optional<PointCloud> scan = read_scan(reader, scans[i], report.reading, reason);
     if (!scan) {
       localizer.skip(reason);
     } else if (odometry) {
@@ -82,7 +91,6 @@ LocalizeReport localize_without_guess(const std::vector<ScanPlace>& scans, const
   }
 
   registration::SequenceResult result = localizer.finish();
-  LocalizeReport report;
   report.batches = std::move(result.batches);
   for (std::size_t i = 0; i < scans.size(); ++i) report.scans.push_back(row_of(scans[i], result.scans[i]));
   return report;

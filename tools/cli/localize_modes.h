@@ -18,11 +18,13 @@ namespace vdbmap::cli {
 /// Each scan from a guess of its own, or, where there is one guess only, from the motion of those before.
 LocalizeReport localize_from_guesses(const std::vector<ScanPlace>& scans, const VoxelMap& map,
                                      const Trajectory& guesses, const registration::FineOptions& fine,
-                                     const registration::FoundCriteria& criteria, const CommonOptions& common);
+                                     const registration::FoundCriteria& criteria, const ReadOptions& read,
+                                     const CommonOptions& common);
 
 /// The whole sequence without a first guess; with the poses of an odometry made before, or our own.
 LocalizeReport localize_without_guess(const std::vector<ScanPlace>& scans, const VoxelMap& map,
                                       const std::optional<Trajectory>& odometry,
-                                      const registration::LocalizerOptions& options, const CommonOptions& common);
+                                      const registration::LocalizerOptions& options, const ReadOptions& read,
+                                      const CommonOptions& common);
 
 }  // namespace vdbmap::cli

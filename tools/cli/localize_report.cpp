@@ -94,6 +94,7 @@ LocalizedRow row_of(const ScanPlace& scan, const registration::SequenceScan& loc
 }
 
 void warn(const LocalizeReport& report) {
+  report.reading.warn();
   for (const SequenceBatch& batch : report.batches) {
     if (!batch.search.found()) {
       spdlog::warn("{}: {}: {}", range_of(report, batch),

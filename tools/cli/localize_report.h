@@ -11,6 +11,7 @@
 
 #include "registration/localize.h"
 #include "registration/localizer.h"
+#include "tools/cli/reading.h"
 #include "vdbmap/io/scan_sequence.h"
 #include "vdbmap/io/trajectory_file.h"
 
@@ -33,6 +34,7 @@ struct LocalizedRow {
 struct LocalizeReport {
   std::vector<LocalizedRow> scans;
   std::vector<registration::SequenceBatch> batches;  ///< of a search without a first guess, else empty
+  ReadingReport reading;                             ///< what was found in the files
 
   std::size_t num_found() const;
 

@@ -41,6 +41,7 @@ struct OdometryCommandOptions {
   double min_range = registration::OdometryOptions().range.min;
   double max_range = registration::OdometryOptions().range.max;
   bool has_moved_points = false;
+  ReadOptions read{.is_in_sensor_frame = true};
 };
 
 // What became of one scan.
@@ -77,6 +78,7 @@ void add_options(CLI::App& app, OdometryCommandOptions& options) {
       ->capture_default_str();
   app.add_flag("--no-deskew", options.has_moved_points,
                "The points are already moved to where the sensor stood at one time, as KITTI's are");
+  add_read_options(app, options.read);
   add_scan_selection(app, options.selection);
 }
 
@@ -110,17 +112,19 @@ std::vector<ScanReport> follow(const std::vector<ScanPlace>& scans, const Odomet
                                const StopRequest& stop, OdometryCollector& collector, const CommonOptions& common) {
   registration::Odometry odometry(odometry_options(options));
   Progress progress("following scans", scans.size(), common);
-  ScanReader reader;
+  ScanReader reader(options.read);
+  ReadingReport reading;
   std::vector<ScanReport> reports;
   for (const ScanPlace& place : scans) {
     if (stop.is_made()) break;
     std::string reason;
-    std::optional<PointCloud> scan = read_scan(reader, place, reason);
+    std::optional<PointCloud> scan = read_scan(reader, place, reading, reason);
     reports.push_back({place, scan ? odometry.register_scan(*scan) : step_without_points(reason)});
     warn(reports.back());
     if (scan) collector.add(std::move(*scan), reports.back().step);
     progress.advance();
   }
+  reading.warn();
   return reports;
 }
 

@@ -4,13 +4,15 @@
 #include <optional>
 #include <string>
 
+#include "tools/cli/reading.h"
 #include "vdbmap/core/point_cloud.h"
 #include "vdbmap/io/scan_sequence.h"
 
 namespace vdbmap::cli {
 
-/// A scan of a sequence; nothing, and the reason, where its content is damaged: the others can still be used. Throws
-/// IoError where the file cannot be read at all.
-std::optional<PointCloud> read_scan(ScanReader& reader, const ScanPlace& scan, std::string& reason);
+/// A scan of a sequence, what was found in its file going to `report`; nothing, and the reason, where its content is
+/// damaged: the others can still be used. Throws IoError where the file cannot be read at all.
+std::optional<PointCloud> read_scan(ScanReader& reader, const ScanPlace& scan, ReadingReport& report,
+                                    std::string& reason);
 
 }  // namespace vdbmap::cli

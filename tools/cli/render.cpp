@@ -7,6 +7,7 @@
 #include <optional>
 #include <stdexcept>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include <CLI/Option.hpp>
@@ -19,6 +20,7 @@
 #include "tools/cli/map_output.h"
 #include "tools/cli/number_list.h"
 #include "tools/cli/output.h"
+#include "tools/cli/reading.h"
 #include "tools/cli/short_names.h"
 #include "vdbmap/core/error.h"
 #include "vdbmap/io/point_reader.h"
@@ -44,6 +46,7 @@ struct RenderCommandOptions {
   std::vector<std::filesystem::path> trajectories;
   std::vector<std::filesystem::path> points;
   bool is_plain = false;
+  ReadOptions read;
   RenderOptions render;
 };
 
@@ -105,6 +108,7 @@ void add_options(CLI::App& app, RenderCommandOptions& options) {
       ->type_name("S");
   app.add_flag("--plain", options.is_plain, "Only the picture: no grid, scale bar, north arrow and legend");
   add_overlay_options(app, options);
+  add_read_options(app, options.read);
 }
 
 RenderOptions render_options(const RenderCommandOptions& options) {
@@ -123,7 +127,13 @@ RenderOverlays read_overlays(const RenderCommandOptions& options) {
   RenderOverlays overlays;
   auto name = names.begin();
   for (const auto& file : options.trajectories) overlays.trajectories.push_back({*name++, read_trajectory(file)});
-  for (const auto& file : options.points) overlays.points.push_back({*name++, read_points(file).cloud.positions});
+  ReadingReport reading;
+  for (const auto& file : options.points) {
+    ReadResult read = read_points(file, options.read);
+    reading.add(file, read.findings);
+    overlays.points.push_back({*name++, std::move(read.cloud.positions)});
+  }
+  reading.warn();
   return overlays;
 }
 

@@ -20,6 +20,11 @@ std::future<ReadResult> start_reading(ScanReader& reader, const MapInput& input,
   });
 }
 
+ReadOptions read_options(const std::vector<MapInput>& inputs, ReadOptions options) {
+  options.is_in_sensor_frame = inputs.front().map_from_scan.has_value();
+  return options;
+}
+
 void note_epsg(MapFromFiles& result, const std::filesystem::path& file, const std::optional<int>& epsg) {
   if (!epsg) return;
   if (result.epsg_of_files.value_or(*epsg) != *epsg) {
@@ -51,7 +56,8 @@ class SchemeNotes {
 
 void note(MapFromFiles& result, const MapInput& input, const ReadResult& read) {
   result.num_points += read.cloud.size();
-  result.num_dropped += read.dropped.size();
+  result.num_dropped += read.num_non_finite;
+  for (const ReadFinding& finding : read.findings) result.findings.push_back({input.scan.file, finding});
   if (read.metres_per_unit != 1.0) result.foreign_units.push_back({input.scan.file, read.metres_per_unit});
   if (!input.map_from_scan) note_epsg(result, input.scan.file, read.epsg);
 }
@@ -85,7 +91,7 @@ MapFromFiles build_map_from_files(const std::vector<MapInput>& inputs, const Map
   MapBuilder builder(options.build);
   MapFromFiles result;
   SchemeNotes schemes;
-  ScanReader reader;
+  ScanReader reader(read_options(inputs, options.read));
   std::future<ReadResult> next = start_reading(reader, inputs.front(), options.reads_ahead);
   for (std::size_t i = 0; i < inputs.size(); ++i) {
     const ReadResult read = next.get();

@@ -26,6 +26,7 @@ struct MapInput {
 struct MapFromFilesOptions {
   BuildOptions build;                          ///< without `epsg`, that of the files in map coordinates is taken
   std::optional<LabelScheme> label_scheme;     ///< whose numbers labels are, instead of what the files' formats say
+  ReadOptions read;                            ///< `is_in_sensor_frame` as the inputs have poses
   bool reads_ahead = true;                     ///< a thread of its own reads the next scan while one is folded
   std::function<void()> on_scan_done = [] {};  ///< called after each scan
 };
@@ -36,11 +37,18 @@ struct ForeignUnit {
   double metres_per_unit = 1.0;
 };
 
+/// What was noticed while one of the files was read.
+struct FileFinding {
+  std::filesystem::path file;
+  ReadFinding finding;
+};
+
 /// A map, and what was noticed in the files.
 struct MapFromFiles {
   VoxelMap map;
   std::size_t num_points = 0;
   std::size_t num_dropped = 0;             ///< points with a coordinate that is not finite
+  std::vector<FileFinding> findings;       ///< what else was left out or is doubtful, in the order of the files
   std::optional<int> epsg_of_files;        ///< of the files in map coordinates, where one says so
   std::vector<ForeignUnit> foreign_units;  ///< taken as they are, as if in metres
 };

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "vdbmap/io/point_cloud_filter.h"
 
+#include <algorithm>
 #include <string>
 #include <utility>
 #include <vector>
@@ -18,35 +19,63 @@ std::vector<std::size_t> places_of_non_finite(const std::vector<Eigen::Vector3d>
   return places;
 }
 
-// Keeps the values whose point is finite; an attribute that the cloud does not have stays empty.
+// Removes the values at these places, which rise; an attribute that the cloud does not have stays empty.
 template <typename T>
-void keep_finite(std::vector<T>& values, const std::vector<Eigen::Vector3d>& positions) {
-  if (values.empty()) return;
-  std::size_t kept = 0;
-  for (std::size_t i = 0; i < positions.size(); ++i) {
-    if (positions[i].allFinite()) values[kept++] = values[i];
+void remove_at(std::vector<T>& values, std::span<const std::size_t> places) {
+  if (values.empty() || places.empty()) return;
+  auto next = places.begin();
+  std::size_t kept = places.front();
+  for (std::size_t i = kept; i < values.size(); ++i) {
+    if (next != places.end() && *next == i) {
+      ++next;
+    } else {
+      values[kept++] = values[i];
+    }
   }
   values.resize(kept);
+}
+
+void remove_points(PointCloud& cloud, std::span<const std::size_t> places) {
+  remove_at(cloud.positions, places);
+  remove_at(cloud.colors, places);
+  remove_at(cloud.intensities, places);
+  remove_at(cloud.times, places);
+  remove_at(cloud.rings, places);
+  remove_at(cloud.labels, places);
+}
+
+// Places among all, from places among those that are left without the dropped ones; both rise.
+std::vector<std::size_t> places_among_all(std::span<const std::size_t> places, std::span<const std::size_t> dropped) {
+  std::vector<std::size_t> result;
+  std::size_t num_before = 0;
+  for (const std::size_t place : places) {
+    while (num_before < dropped.size() && dropped[num_before] <= place + num_before) ++num_before;
+    result.push_back(place + num_before);
+  }
+  return result;
 }
 
 }  // namespace
 
 std::vector<std::size_t> drop_non_finite(PointCloud& cloud) {
   std::vector<std::size_t> dropped = places_of_non_finite(cloud.positions);
-  if (dropped.empty()) return dropped;
-
-  keep_finite(cloud.colors, cloud.positions);
-  keep_finite(cloud.intensities, cloud.positions);
-  keep_finite(cloud.times, cloud.positions);
-  keep_finite(cloud.rings, cloud.positions);
-  keep_finite(cloud.labels, cloud.positions);
-  std::erase_if(cloud.positions, [](const Eigen::Vector3d& position) { return !position.allFinite(); });
+  remove_points(cloud, dropped);
   return dropped;
+}
+
+void drop_points(ReadResult& read, std::span<const std::size_t> places, const ReadFinding& finding) {
+  if (places.empty()) return;
+  const std::vector<std::size_t> added = places_among_all(places, read.dropped);
+  const auto middle = read.dropped.insert(read.dropped.end(), added.begin(), added.end());
+  std::inplace_merge(read.dropped.begin(), middle, read.dropped.end());
+  remove_points(read.cloud, places);
+  add_finding(read.findings, finding);
 }
 
 ReadResult finish_reading(const std::filesystem::path& path, PointCloud cloud) {
   ReadResult result;
   result.dropped = drop_non_finite(cloud);
+  result.num_non_finite = result.dropped.size();
   if (cloud.empty()) {
     const std::string dropped = std::to_string(result.dropped.size());
     throw IoError::malformed(

@@ -8,22 +8,34 @@
 
 #include "vdbmap/core/label_scheme.h"
 #include "vdbmap/core/point_cloud.h"
+#include "vdbmap/io/read_finding.h"
 
 namespace vdbmap {
+
+/// How point files are read.
+struct ReadOptions {
+  bool strict = false;              ///< damage is an error, not a finding
+  bool is_in_sensor_frame = false;  ///< then a single point at the origin is no measurement; else two of them are none
+};
 
 /// What a point file held.
 struct ReadResult {
   PointCloud cloud;
-  std::vector<std::size_t> dropped;  ///< places in the file of points with a coordinate that is not finite, rising
+  std::vector<std::size_t> dropped;                  ///< places in the file of all points that were left out, rising
+  std::size_t num_non_finite = 0;                    ///< of these: with a coordinate that is not finite
+  std::vector<ReadFinding> findings;                 ///< what else was left out or is doubtful, in the order it was met
   LabelScheme label_scheme = LabelScheme::kUnknown;  ///< whose numbers the labels are, where the format says so
   std::optional<int> epsg;                           ///< of the coordinates, where the file says so
   double metres_per_unit = 1.0;  ///< length of the file's unit, where the file says so (a LAS file in feet: 0.3048)
 };
 
 /// Reads a PLY, PCD, LAS, KITTI .bin, XYZ/CSV or VLP-16 .pcap file; the content decides, then the extension.
-/// A file that holds no point is an error. Throws IoError with the place and the reason; never allocates more than
-/// the file's own size can account for.
-ReadResult read_points(const std::filesystem::path& path);
+/// What can be read in a damaged file is read, and the findings say what was left out. A file that holds no point is an
+/// error. Throws IoError with the place and the reason; never allocates more than the file's own size can account for.
+ReadResult read_points(const std::filesystem::path& path, const ReadOptions& options = {});
+
+/// What strict reading does with damage: throws IoError with the first finding that is one.
+void refuse_damage(const std::filesystem::path& path, const std::vector<ReadFinding>& findings);
 
 /// The point files that `inputs` name, in order: a file stands for itself, a folder for the point files directly in it,
 /// sorted by name with numbers in numeric order. Throws IoError for a missing input or a folder without any.

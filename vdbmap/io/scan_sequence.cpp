@@ -46,13 +46,13 @@ std::vector<ScanPlace> list_scans(const std::vector<std::filesystem::path>& file
   return scans;
 }
 
-ScanReader::ScanReader() = default;
+ScanReader::ScanReader(const ReadOptions& options) : options_(options) {}
 ScanReader::~ScanReader() = default;
 ScanReader::ScanReader(ScanReader&&) noexcept = default;
 ScanReader& ScanReader::operator=(ScanReader&&) noexcept = default;
 
 ReadResult ScanReader::read(const ScanPlace& scan) {
-  if (!scan.turn) return read_points(scan.file);
+  if (!scan.turn) return read_points(scan.file, options_);
   ReadResult result;
   result.cloud = read_turn(scan);
   return result;

@@ -34,7 +34,7 @@ std::vector<ScanPlace> list_scans(const std::vector<std::filesystem::path>& file
 /// going back in a capture starts it anew. One scan is in memory at a time.
 class ScanReader {
  public:
-  ScanReader();
+  explicit ScanReader(const ReadOptions& options = {});
   ~ScanReader();
   ScanReader(ScanReader&&) noexcept;
   ScanReader& operator=(ScanReader&&) noexcept;
@@ -45,6 +45,7 @@ class ScanReader {
  private:
   PointCloud read_turn(const ScanPlace& scan);
 
+  ReadOptions options_;
   std::filesystem::path capture_;  // that `turns_` reads
   std::unique_ptr<Vlp16TurnReader> turns_;
   std::size_t next_turn_ = 0;  // of `turns_`

@@ -46,6 +46,15 @@ TEST_F(LabelFile, PointsThatWereDroppedKeepTheirPlaceInIt) {
   EXPECT_EQ(read.label_scheme, LabelScheme::kSemanticKitti);
 }
 
+TEST_F(LabelFile, PointsDroppedForDifferentReasonsKeepTheirPlacesInIt) {
+  test::write_raw(folder_ / "a.xyz", "0 0 0\nnan 0 0\n1 0 0\n0 0 0\nnan 0 0\nnan 0 0\n0 0 0\n2 0 0\n");
+  ReadResult read = read_points(folder_ / "a.xyz");
+  EXPECT_EQ(read.dropped, (std::vector<std::size_t>{0, 1, 3, 4, 5, 6}));
+  EXPECT_EQ(read.num_non_finite, 3U);
+  attach_labels(read, written({{1, 0}, {2, 7}, {3, 7}, {4, 7}, {5, 7}, {6, 7}, {7, 7}, {8, 7}}));
+  EXPECT_EQ(read.cloud.labels, (std::vector<std::uint16_t>{3, 8}));
+}
+
 TEST_F(LabelFile, AnotherNumberOfPointsIsRefused) {
   test::write_raw(folder_ / "a.xyz", "1 0 0\n2 0 0\nnan 0 0\n");
   for (const std::size_t count : {0UL, 2UL, 4UL}) {

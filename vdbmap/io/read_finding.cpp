@@ -1,0 +1,25 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "vdbmap/io/read_finding.h"
+
+#include <algorithm>
+
+namespace vdbmap {
+
+std::string ReadFinding::text() const {
+  std::string text = count == 0 ? what : std::to_string(count) + " " + what;
+  if (!first.empty()) text += count == 1 || count == 0 ? " (" + first + ")" : " (first: " + first + ")";
+  return text;
+}
+
+void add_finding(std::vector<ReadFinding>& findings, const ReadFinding& finding) {
+  const auto same = std::ranges::find_if(findings, [&](const ReadFinding& other) {
+    return other.what == finding.what && other.is_damage == finding.is_damage;
+  });
+  if (same == findings.end()) {
+    findings.push_back(finding);
+  } else {
+    same->count += finding.count;
+  }
+}
+
+}  // namespace vdbmap
