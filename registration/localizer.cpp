@@ -18,8 +18,8 @@ constexpr double kUprightTilt_deg = 10;
 constexpr double kDrift = 0.03;  // [m/m] of odometry
 
 std::vector<Ray> rays_of(const SampledScan& sample) {
-  constexpr std::size_t kRays = 500;
-  const std::size_t step = std::max<std::size_t>(1, sample.fine.size() / kRays);
+  constexpr std::size_t kRaysPerScan = 500;
+  const std::size_t step = std::max<std::size_t>(1, sample.fine.size() / kRaysPerScan);
   std::vector<Ray> rays;
   for (std::size_t i = 0; i < sample.fine.size(); i += step) rays.push_back({Eigen::Vector3d::Zero(), sample.fine[i]});
   return rays;

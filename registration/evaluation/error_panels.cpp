@@ -14,7 +14,7 @@ namespace vdbmap::registration {
 namespace {
 
 constexpr Rgb8 kBarColor = rgb8(0x4878a8);
-constexpr Rgb8 kTextColor = rgb8(0x202020);
+constexpr Rgb8 kPanelTextColor = rgb8(0x202020);
 constexpr Rgb8 kQuietColor = rgb8(0x606060);
 constexpr int kTextSize = 15;         // [pixels]
 constexpr double kLineHeight = 25;    // [pixels]
@@ -70,12 +70,12 @@ class TextColumn {
   TextColumn(Image& image, const Eigen::Vector2d& corner) : image_(image), place_(corner) {}
 
   void add(const std::string& text, bool is_bold = false) {
-    draw_text(image_, place_, text, {.size = kTextSize, .ink = {kTextColor}, .is_bold = is_bold});
+    draw_text(image_, place_, text, {.size = kTextSize, .ink = {kPanelTextColor}, .is_bold = is_bold});
     place_.y() += kLineHeight;
   }
 
   /// A name and numbers in columns of their own.
-  void add_row(const std::string& name, std::span<const std::string> cells, Rgb8 color = kTextColor) {
+  void add_row(const std::string& name, std::span<const std::string> cells, Rgb8 color = kPanelTextColor) {
     draw_text(image_, place_, name, {.size = kTextSize, .ink = {color}});
     double right = place_.x() + kNameWidth;
     for (const std::string& cell : cells) {

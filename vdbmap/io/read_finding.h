@@ -11,7 +11,7 @@ namespace vdbmap {
 struct ReadFinding {
   std::string what;  ///< after its number: "withheld points left out"; after no number: "the layout is that of ..."
   std::size_t count = 0;   ///< of such things; 0: what concerns the file as a whole
-  std::string first;       ///< where the first one is, or what is wrong with it; may be empty
+  std::string first = {};  ///< where the first one is, or what is wrong with it; may be empty
   bool is_damage = false;  ///< the file is not as its format says: strict reading refuses it
 
   /// One line: "3 withheld points left out (first: point 12)".
