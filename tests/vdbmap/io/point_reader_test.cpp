@@ -81,7 +81,9 @@ TEST_F(PointReader, ReadsEveryKindOfRealFile) {
   const auto data = test::real_data_folder();
   if (!data) GTEST_SKIP() << "needs the folder of real recordings, see VDBMAP_DATA";
 
-  EXPECT_EQ(read_points(*data / "pair" / "source.ply").cloud.size(), 69792u);
+  const ReadResult pair = read_points(*data / "pair" / "source.ply");
+  EXPECT_EQ(pair.cloud.size(), 64685u);
+  EXPECT_EQ(pair.dropped.size(), 5107u);  // lie at the origin: counted by another program
   EXPECT_EQ(read_points(*data / "velodyne" / "street_16beam.pcd").cloud.size(), 29377u);
   EXPECT_EQ(read_points(*data / "las" / "autzen_trim.las").cloud.size(), 110000u);
   EXPECT_GT(read_points(*data / "velodyne" / "vlp16_bench.pcap").cloud.size(), 1000u);
