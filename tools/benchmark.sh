@@ -28,7 +28,7 @@ vdbmap() { "$build/bin/vdbmap" "$@"; }
 
 build_all() {
   install_missing "${build_packages[@]}" "${test_packages[@]}" "${benchmark_packages[@]}"
-  cmake --preset release -B "$build"
+  cmake --preset release -B "$build" -D VDBMAP_BUILD_BENCHMARKS=ON
   cmake --build "$build" \
     --target vdbmap_command map_benchmark fine_benchmark odometry_benchmark coarse_benchmark render_benchmark
 }

@@ -9,8 +9,8 @@ build_packages=(
   # Pictures and their letters; the CMake config of OpenImageIO wants its tools too.
   fonts-dejavu-core libopenimageio-dev openimageio-tools
 )
-test_packages=(libbenchmark-dev libgmock-dev libgtest-dev libpng-dev)
-benchmark_packages=(jq time)
+test_packages=(libgmock-dev libgtest-dev libpng-dev)
+benchmark_packages=(jq libbenchmark-dev time)
 ci_packages=(blender clang-format python3-numpy python3-openvdb)
 
 is_installed() {

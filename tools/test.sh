@@ -1,11 +1,17 @@
 #!/usr/bin/env bash
 # SPDX-License-Identifier: GPL-3.0-or-later
-# Installs the Debian packages that are missing, builds vdbmap and runs its tests. Results: build/release/tests.xml.
+# tools/test.sh [PRESET]: installs the Debian packages that are missing, builds vdbmap and runs its tests. PRESET of CMakePresets.json, by default
+# release; results in build/PRESET/tests.xml and test_results/.
 set -euo pipefail
 cd "$(dirname "${BASH_SOURCE[0]}")/.."
 . tools/packages.sh
 
+preset=${1:-release}
+build=build/$preset
+
 install_missing "${build_packages[@]}" "${test_packages[@]}"
-cmake --preset release
-cmake --build --preset release
-ctest --preset release --parallel 2 --output-junit tests.xml
+cmake --preset "$preset"
+cmake --build --preset "$preset"
+rm -rf "$build/test_results" "$build/tests.xml"
+ctest --preset "$preset" --parallel 2 --output-junit tests.xml || true
+tools/count_tests.sh "$build"

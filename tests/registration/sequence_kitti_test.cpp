@@ -59,7 +59,7 @@ class SequenceKitti : public testing::Test {
   }
 
   void SetUp() override {
-    if (!city() || !residential()) GTEST_SKIP() << "needs kitti_drive5 and kitti00 in the folder of real data";
+    if (!city() || !residential()) GTEST_SKIP() << test::kNeedsRealData;
   }
 };
 

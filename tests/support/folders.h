@@ -10,6 +10,9 @@ namespace vdbmap::test {
 /// Tests that need it skip with a message.
 std::optional<std::filesystem::path> real_data_folder();
 
+/// What a test says that skips for want of them.
+inline constexpr const char* kNeedsRealData = "needs the folder of real recordings ($VDBMAP_DATA)";
+
 /// A folder of its own for one test, removed at the end.
 class TemporaryFolder {
  public:

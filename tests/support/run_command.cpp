@@ -5,6 +5,7 @@
 #include <cerrno>
 #include <csignal>
 #include <system_error>
+#include <utility>
 
 #include <fcntl.h>
 #include <poll.h>
@@ -57,9 +58,14 @@ bool drain(int descriptor, std::string& text) {
 }
 
 // Reads both streams to their ends, which come when the child has ended, by itself or at the deadline.
-void collect(pid_t child, int out, int err, Clock::time_point deadline, CommandResult& result) {
+void collect(pid_t child, int out, int err, const RunOptions& options, Clock::time_point deadline,
+             CommandResult& result) {
   std::array<pollfd, 2> streams = {{{out, POLLIN, 0}, {err, POLLIN, 0}}};
+  std::function<void(pid_t)> while_running = options.while_running;
   while (streams[0].fd >= 0 || streams[1].fd >= 0) {
+    if (while_running && result.err.find(options.running_when_err_says) != std::string::npos) {
+      std::exchange(while_running, {})(child);
+    }
     const auto left = std::chrono::duration_cast<std::chrono::milliseconds>(deadline - Clock::now()).count();
     if (left <= 0) ::kill(child, SIGKILL);
     ::poll(streams.data(), streams.size(), left <= 0 ? 1000 : static_cast<int>(left));
@@ -87,10 +93,9 @@ CommandResult run_command(const std::filesystem::path& program, const std::vecto
   const pid_t child = start(program, arguments, out_target, err.write_end);
   ::close(out.write_end);
   ::close(err.write_end);
-  if (options.while_running) options.while_running(child);
 
   CommandResult result;
-  collect(child, out.read_end, err.read_end, deadline, result);
+  collect(child, out.read_end, err.read_end, options, deadline, result);
   ::close(out.read_end);
   ::close(err.read_end);
   wait_for(child, result);

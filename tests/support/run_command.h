@@ -22,7 +22,8 @@ struct CommandResult {
 struct RunOptions {
   std::chrono::seconds timeout{60};            ///< then the program is killed
   int out_descriptor = -1;                     ///< stdout goes here instead of into the result
-  std::function<void(pid_t)> while_running{};  ///< called once after the start, for example to send a signal
+  std::function<void(pid_t)> while_running{};  ///< called once, for example to send a signal
+  std::string running_when_err_says{};         ///< what stderr has to say before that; empty: the start is enough
 };
 
 /// Runs a program with arguments as they are, without a shell; stdin is empty.

@@ -136,7 +136,9 @@ PointCloud scan_scene(const Scene& scene, const Eigen::Isometry3d& map_from_scan
   return scan;
 }
 
-PointCloud survey_of_village() {
+namespace {
+
+PointCloud scan_village() {
   constexpr double kSpacing = 8;  // [m] between two stops
   const Scene scene = village();
   PointCloud survey;
@@ -148,6 +150,13 @@ PointCloud survey_of_village() {
               pose);
     survey.positions.insert(survey.positions.end(), scan.positions.begin(), scan.positions.end());
   }
+  return survey;
+}
+
+}  // namespace
+
+const PointCloud& survey_of_village() {
+  static const PointCloud survey = scan_village();
   return survey;
 }
 

@@ -53,8 +53,8 @@ struct Scanner {
 PointCloud scan_scene(const Scene& scene, const Eigen::Isometry3d& map_from_scan, const Scanner& scanner = {});
 
 /// What a dense scanner sees of the village from a drive through it [m, frame of the village]: what a map is made of,
-/// with the backs of things unseen.
-PointCloud survey_of_village();
+/// with the backs of things unseen. Scanned once a program.
+const PointCloud& survey_of_village();
 
 /// The cloud moved by a pose.
 PointCloud moved(PointCloud cloud, const Eigen::Isometry3d& target_from_cloud);

@@ -1,6 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // tools/experiment.sh on a street of 60 m and 20 scans: all commands of the pipeline, one after the other.
-#include "tests/support/sanitizers.h"
 #include "tests/tools/map_command.h"
 
 namespace vdbmap::cli {
@@ -9,7 +8,6 @@ namespace {
 class Experiment : public MapCommand {};
 
 TEST_F(Experiment, ScansOfAnotherDayAreFoundInTheMapOfTheFirst) {
-  if (test::kIsSanitized) GTEST_SKIP() << "takes minutes under a sanitizer";
   const std::string street = path("street");
   const std::string map = path("map.vdb");
   const std::string poses = path("poses.txt");

@@ -19,17 +19,16 @@ namespace {
 
 using nlohmann::json;
 
-class Localize : public MapCommand {
- protected:
-  static constexpr int kNumScans = 4;
-
-  Localize() {
+// The map and the scans of a drive through it, made once a program.
+class VillageFiles : public MapCommand {
+ public:
+  VillageFiles() {
     built("village.vdb", test::survey_of_village());
     std::filesystem::create_directories(folder_ / "drive");
     for (int i = 0; i < kNumScans; ++i) {
       Eigen::Isometry3d pose(Eigen::Translation3d(-14 + i, 0.5 + 0.02 * i, 1.8));
       pose.rotate(Eigen::AngleAxisd(2.3 + 0.01 * i, Eigen::Vector3d::UnitZ()));
-      truth_.map_from_scan.emplace_back(pose);
+      truth.map_from_scan.emplace_back(pose);
       test::Scanner scanner;
       scanner.num_azimuths = 600;
       scanner.range_noise = 0.01;
@@ -38,6 +37,24 @@ class Localize : public MapCommand {
       cloud.intensities.assign(cloud.size(), 0.5F);
       write_kitti_bin(folder_ / "drive" / (std::to_string(i) + ".bin"), cloud);
     }
+  }
+
+  const std::filesystem::path& folder() const { return folder_.path(); }
+
+  Trajectory truth;
+
+ private:
+  static constexpr int kNumScans = 4;
+
+  void TestBody() override {}
+};
+
+class Localize : public MapCommand {
+ protected:
+  Localize() {
+    static const VillageFiles files;
+    std::filesystem::copy(files.folder(), folder_.path(), std::filesystem::copy_options::recursive);
+    truth_ = files.truth;
   }
 
   void expect_true(const std::string& poses) const {

@@ -169,7 +169,7 @@ TEST_F(Merge, MapsThatDoNotFitAreBadInput) {
 class RealData : public MapCommand {
  protected:
   void SetUp() override {
-    if (!test::real_data_folder()) GTEST_SKIP() << "no folder of real recordings";
+    if (!test::real_data_folder()) GTEST_SKIP() << test::kNeedsRealData;
     data_ = *test::real_data_folder();
   }
 

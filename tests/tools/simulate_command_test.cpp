@@ -9,7 +9,6 @@
 #include <gtest/gtest.h>
 
 #include "tests/support/raw_files.h"
-#include "tests/support/sanitizers.h"
 #include "tests/tools/map_command.h"
 
 namespace vdbmap::cli {
@@ -87,7 +86,6 @@ TEST_F(SimulateCommand, ReplacesAnEarlierSimulation) {
 }
 
 TEST_F(SimulateCommand, LeavesNothingWhenInterrupted) {
-  if (test::kIsSanitized) GTEST_SKIP() << "takes minutes under a sanitizer";
   test::RunOptions options;
   options.while_running = [this](pid_t child) {
     // Not before there is something to remove.

@@ -8,7 +8,6 @@
 
 #include "registration/fine/point_to_plane.h"
 #include "tests/support/random_points.h"
-#include "tests/support/sanitizers.h"
 #include "tests/support/synthetic_scene.h"
 #include "vdbmap/core/map_builder.h"
 
@@ -56,7 +55,6 @@ Vector6d error_of(const Eigen::Isometry3d& estimate, const Eigen::Isometry3d& tr
 class HonestCovariance : public testing::TestWithParam<NoisyPlace> {};
 
 TEST_P(HonestCovariance, NormalizedErrorsStayWithinTheir95PercentBounds) {
-  if (test::kIsSanitized) GTEST_SKIP() << "so few trials as there is time for say nothing about a distribution";
   constexpr unsigned kTrials = 24;
   const NoisyPlace place = GetParam();
   std::mt19937 random(1234);  // other maps, scans and poses than those the systematic part was estimated from

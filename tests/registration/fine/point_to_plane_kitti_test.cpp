@@ -51,7 +51,7 @@ class PointToPlaneKitti : public testing::Test {
   }
 
   void SetUp() override {
-    if (!drive()) GTEST_SKIP() << "needs kitti_drive5 in the folder of real data ($VDBMAP_DATA)";
+    if (!drive()) GTEST_SKIP() << test::kNeedsRealData;
     ASSERT_EQ(drive()->files.size(), drive()->poses.size());
   }
 };

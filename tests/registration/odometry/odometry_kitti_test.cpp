@@ -41,7 +41,7 @@ class OdometryKitti : public testing::TestWithParam<DriveCase> {
   void SetUp() override {
     const auto data = test::real_data_folder();
     if (!data || !std::filesystem::is_directory(*data / GetParam().folder / "velodyne")) {
-      GTEST_SKIP() << "needs " << GetParam().folder << " in the folder of real data ($VDBMAP_DATA)";
+      GTEST_SKIP() << test::kNeedsRealData;
     }
     files_ = list_point_files({*data / GetParam().folder / "velodyne"});
     if (test::kIsSanitized) files_.resize(std::min<std::size_t>(files_.size(), 6));
@@ -70,7 +70,6 @@ TEST_P(OdometryKitti, EveryScanIsWithinFifteenCentimetres) {
 }
 
 TEST_P(OdometryKitti, AGapOfEightScansIsBridged) {
-  if (test::kIsSanitized) GTEST_SKIP() << "takes minutes under a sanitizer";
   Odometry odometry;
   const std::size_t gap = files_.size() > 32 ? 24 : 5;
   for (std::size_t i = 0; i < std::min<std::size_t>(files_.size(), gap + 10); ++i) {
@@ -92,7 +91,7 @@ TEST(OdometryOfTwoPlaces, AnotherStreetIsRefused) {
   const auto data = test::real_data_folder();
   if (!data || !std::filesystem::is_directory(*data / "kitti_drive5") ||
       !std::filesystem::is_directory(*data / "kitti00")) {
-    GTEST_SKIP() << "needs kitti_drive5 and kitti00 in the folder of real data ($VDBMAP_DATA)";
+    GTEST_SKIP() << test::kNeedsRealData;
   }
   const auto here = list_point_files({*data / "kitti_drive5" / "velodyne"});
   const auto there = list_point_files({*data / "kitti00" / "velodyne"});

@@ -6,7 +6,6 @@
 
 #include <gtest/gtest.h>
 
-#include "tests/support/sanitizers.h"
 #include "tools/simulator/truth_files.h"
 
 namespace vdbmap::simulator {
@@ -48,7 +47,6 @@ TEST(Changes, CarsThatLeftVanishAndCarsThatCameAppearWhereTheyStood) {
 }
 
 TEST(Changes, CarsThatStayChangeNothing) {
-  if (test::kIsSanitized) GTEST_SKIP() << "takes minutes under a sanitizer";
   const Street street = make_street({.length = 30, .margin = 5, .occupancy = 1, .turnover = 0});
   const auto changes = changed_voxels(street, 0);
   EXPECT_FALSE(changes.empty());  // people, bicycles, bins and leaves

@@ -12,7 +12,6 @@
 #include "tests/support/folders.h"
 #include "tests/support/pose_distance.h"
 #include "tests/support/raw_files.h"
-#include "tests/support/sanitizers.h"
 #include "tests/support/threads.h"
 #include "tools/simulator/material.h"
 #include "vdbmap/core/error.h"
@@ -75,14 +74,10 @@ std::map<int, Box> read_vehicles(const path& file) {
 class Simulation : public testing::Test {
  protected:
   static void SetUpTestSuite() {
-    if (test::kIsSanitized) return;
     folder_ = std::make_unique<test::TemporaryFolder>();
     result_ = simulate(out(), short_street());
   }
   static void TearDownTestSuite() { folder_.reset(); }
-  void SetUp() override {
-    if (test::kIsSanitized) GTEST_SKIP() << "takes minutes under a sanitizer";
-  }
 
   static path out() { return *folder_ / "street"; }
   static path scan_file(int index) { return out() / "epoch1" / "scans" / ("00000" + std::to_string(index) + ".pcd"); }

@@ -54,7 +54,7 @@ TEST_F(KittiBin, WritesZeroWhereThereIsNoIntensity) {
 
 TEST_F(KittiBin, ReadsTheScansOfKitti) {
   const auto data = test::real_data_folder();
-  if (!data) GTEST_SKIP() << "needs the folder of real recordings, see VDBMAP_DATA";
+  if (!data) GTEST_SKIP() << test::kNeedsRealData;
 
   const std::filesystem::path path = list_point_files({*data / "kitti_drive5" / "velodyne"}).front();
   const PointCloud cloud = read_kitti_bin(path).cloud;

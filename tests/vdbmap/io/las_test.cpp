@@ -309,7 +309,7 @@ Bounds bounds_of(const PointCloud& cloud) {
 
 TEST_F(Las, RecordedFileInFeetWithoutCode) {
   const auto data = test::real_data_folder();
-  if (!data) GTEST_SKIP() << "no real data; set VDBMAP_DATA";
+  if (!data) GTEST_SKIP() << test::kNeedsRealData;
   const ReadResult result = read_las(*data / "las" / "autzen_trim.las");
 
   EXPECT_EQ(result.cloud.size(), 110'000U);
@@ -327,7 +327,7 @@ TEST_F(Las, RecordedFileInFeetWithoutCode) {
 
 TEST_F(Las, RecordedFileWithCodeThatImpliesFeet) {
   const auto data = test::real_data_folder();
-  if (!data) GTEST_SKIP() << "no real data; set VDBMAP_DATA";
+  if (!data) GTEST_SKIP() << test::kNeedsRealData;
   const ReadResult result = read_las(*data / "las" / "color_utm_feet.las");
 
   EXPECT_EQ(result.cloud.size(), 10'126U);

@@ -199,7 +199,7 @@ struct RealFile {
 
 TEST_F(Pcd, ReadsTheFilesOfPcl) {
   const auto data = test::real_data_folder();
-  if (!data) GTEST_SKIP() << "needs the folder of real recordings, see VDBMAP_DATA";
+  if (!data) GTEST_SKIP() << test::kNeedsRealData;
 
   const RealFile files[] = {{"street_16beam.pcd", 29377, 20, 16, true, 130.0},
                             {"indoor_vlp16_0.pcd", 28221, 20, 16, false, 130.0},
@@ -228,7 +228,7 @@ TEST_F(Pcd, ReadsTheFilesOfPcl) {
 
 TEST_F(Pcd, TakesTheChannelForTheRingAndLeavesTimesOfUnknownUnit) {
   const auto data = test::real_data_folder();
-  if (!data) GTEST_SKIP() << "needs the folder of real recordings, see VDBMAP_DATA";
+  if (!data) GTEST_SKIP() << test::kNeedsRealData;
 
   const PointCloud cloud = read_pcd(*data / "velodyne" / "vlp16_decoded.pcd").cloud;
   ASSERT_EQ(cloud.size(), 14831u);

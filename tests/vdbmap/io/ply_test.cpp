@@ -228,7 +228,7 @@ TEST_F(Ply, WritesColorsIn16BitsOnlyWhereTheyNeedThem) {
 
 TEST_F(Ply, ReadsTheFilesOfCloudCompare) {
   const auto data = test::real_data_folder();
-  if (!data) GTEST_SKIP() << "needs the folder of real recordings, see VDBMAP_DATA";
+  if (!data) GTEST_SKIP() << test::kNeedsRealData;
 
   for (const auto& [name, num_points] : {std::pair("source.ply", 69792u), std::pair("target.ply", 69088u)}) {
     const ReadResult result = read_ply(*data / "pair" / name);

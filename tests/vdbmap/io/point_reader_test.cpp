@@ -79,7 +79,7 @@ TEST_F(PointReader, RefusesEverythingElse) {
 
 TEST_F(PointReader, ReadsEveryKindOfRealFile) {
   const auto data = test::real_data_folder();
-  if (!data) GTEST_SKIP() << "needs the folder of real recordings, see VDBMAP_DATA";
+  if (!data) GTEST_SKIP() << test::kNeedsRealData;
 
   const ReadResult pair = read_points(*data / "pair" / "source.ply");
   EXPECT_EQ(pair.cloud.size(), 64685u);

@@ -77,7 +77,7 @@ TEST_F(ScanSequence, DamageInACaptureShowsWhenItsTurnsAreCounted) {
 
 TEST_F(ScanSequence, RecordedCapturesGiveTurnsOfAboutATenthOfASecond) {
   const auto data = test::real_data_folder();
-  if (!data) GTEST_SKIP() << "no real data; set VDBMAP_DATA";
+  if (!data) GTEST_SKIP() << test::kNeedsRealData;
   ScanReader reader;
   for (const char* name : {"hdl32.pcap", "vlp16_bench.pcap"}) {
     for (const ScanPlace& scan : list_scans({*data / "velodyne" / name})) {

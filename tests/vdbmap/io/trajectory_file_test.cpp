@@ -224,7 +224,7 @@ TEST_F(TrajectoryFile, TimesMustBeAsManyAsPoses) {
 
 TEST_F(TrajectoryFile, ReadsTheRealDrive) {
   const auto data = test::real_data_folder();
-  if (!data) GTEST_SKIP() << "no folder of real recordings";
+  if (!data) GTEST_SKIP() << test::kNeedsRealData;
   EXPECT_EQ(read_trajectory(*data / "kitti_drive5" / "poses.txt").size(), 64U);
 }
 

@@ -321,7 +321,7 @@ std::vector<double> raw_distances(const std::vector<std::string>& payloads) {
 
 TEST_F(Vlp16Pcap, RecordedVlp16PacketsGiveAllTheirReturns) {
   const auto data = test::real_data_folder();
-  if (!data) GTEST_SKIP() << "no real data; set VDBMAP_DATA";
+  if (!data) GTEST_SKIP() << test::kNeedsRealData;
   const auto path = *data / "velodyne" / "vlp16_bench.pcap";
   const PointCloud cloud = read_vlp16_pcap(path).cloud;
   const std::vector<std::string> payloads = raw_payloads(path);
@@ -343,7 +343,7 @@ TEST_F(Vlp16Pcap, RecordedVlp16PacketsGiveAllTheirReturns) {
 
 TEST_F(Vlp16Pcap, RecordedHdl32PacketsGiveAllTheirReturns) {
   const auto data = test::real_data_folder();
-  if (!data) GTEST_SKIP() << "no real data; set VDBMAP_DATA";
+  if (!data) GTEST_SKIP() << test::kNeedsRealData;
   const auto path = *data / "velodyne" / "hdl32.pcap";
   const PointCloud cloud = read_vlp16_pcap(path).cloud;
   const std::vector<double> distances = raw_distances(raw_payloads(path));
@@ -381,7 +381,7 @@ std::string payload_of_one_echo(double azimuth, std::uint16_t ring, double dista
 
 TEST_F(Vlp16Pcap, TheFrameIsThatOfAnotherDriver) {
   const auto data = test::real_data_folder();
-  if (!data) GTEST_SKIP() << "no real data; set VDBMAP_DATA";
+  if (!data) GTEST_SKIP() << test::kNeedsRealData;
   ByteReader file(*data / "velodyne" / "vlp16_decoded.pcd");
   while (!file.read_line().starts_with("DATA binary")) {
   }

@@ -229,7 +229,7 @@ TEST_F(Xyz, CloudsThatCannotBeWrittenLeaveNoFile) {
 
 TEST_F(Xyz, ArgoverseSweepIsReadAsItStands) {
   const auto data = test::real_data_folder();
-  if (!data) GTEST_SKIP() << "no real data; set VDBMAP_DATA";
+  if (!data) GTEST_SKIP() << test::kNeedsRealData;
   const auto path = *data / "argoverse2" / "sweep_315966265259836000.csv";
   const PointCloud cloud = read_xyz(path).cloud;
 

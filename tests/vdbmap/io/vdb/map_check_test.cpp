@@ -352,7 +352,7 @@ TEST_F(MapCheck, DenseSizeWarnsAndPasses) {
 
 TEST_F(MapCheck, FilesOfOtherProgramsAreJudgedToo) {
   const auto data = test::real_data_folder();
-  if (!data) GTEST_SKIP() << "no folder of real data";
+  if (!data) GTEST_SKIP() << test::kNeedsRealData;
   const std::string common = "anchor known_point";
   EXPECT_EQ(failed_rules(*data / "vdb" / "arnold_torus01.vdb"), "density_and_color grid_classes " + common);
   EXPECT_EQ(failed_rules(*data / "vdb" / "arnold_grids.vdb"), "creator grid_names transforms " + common);

@@ -151,7 +151,7 @@ TEST_F(MapFile, OtherFilesAreRefusedWithTheReason) {
 
 TEST_F(MapFile, FilesOfOtherProgramsAreRefusedWithTheReason) {
   const auto data = test::real_data_folder();
-  if (!data) GTEST_SKIP() << "no folder of real data";
+  if (!data) GTEST_SKIP() << test::kNeedsRealData;
   std::size_t num_files = 0;
   for (const auto& entry : std::filesystem::directory_iterator(*data / "vdb")) {
     const std::string message = io_error_of([&] { load_map(entry.path()); });
