@@ -20,7 +20,7 @@ struct CommandResult {
 };
 
 struct RunOptions {
-  std::chrono::seconds timeout{60};            ///< then the program is killed
+  std::chrono::seconds timeout{300};           ///< then the program is killed: a busy machine may be slow
   int out_descriptor = -1;                     ///< stdout goes here instead of into the result
   std::function<void(pid_t)> while_running{};  ///< called once, for example to send a signal
   std::string running_when_err_says{};         ///< what stderr has to say before that; empty: the start is enough
