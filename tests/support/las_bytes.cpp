@@ -44,7 +44,8 @@ std::string point_bytes(const LasPoint& point, unsigned format) {
   put(bytes, static_cast<std::uint32_t>(point.y), 4);
   put(bytes, static_cast<std::uint32_t>(point.z), 4);
   put(bytes, point.intensity, 2);
-  put(bytes, 0x11, format >= 6 ? 2 : 1);          // return 1 of 1 or 2, flags
+  put(bytes, 0x11, 1);  // return 1 of 1 or 2
+  if (format >= 6) put(bytes, point.flags, 1);
   put(bytes, point.classification, 1);            // up to format 5 with flags in its upper bits
   put(bytes, 0xaaaaaaaaaa, format >= 6 ? 5 : 4);  // user data, scan angle, source
   if (has_time) put(bytes, point.time);

@@ -20,6 +20,7 @@ struct LasPoint {
   std::uint16_t red = 0;
   std::uint16_t green = 0;
   std::uint16_t blue = 0;
+  std::uint8_t flags = 0;  ///< of formats from 6 on, where they have a byte of their own
 };
 
 /// A variable length record.

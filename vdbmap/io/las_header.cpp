@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "vdbmap/io/las_header.h"
 
-#include <algorithm>
 #include <array>
 #include <cmath>
+#include <limits>
 #include <string>
 
 #include "vdbmap/core/error.h"
@@ -23,12 +23,14 @@ constexpr std::uint64_t kRecordLengthAt = 105;
 constexpr std::uint64_t kLegacyNumPointsAt = 107;
 constexpr std::uint64_t kScaleAt = 131;
 constexpr std::uint64_t kOffsetAt = 155;
+constexpr std::uint64_t kWaveformsOffsetAt = 227;
 constexpr std::uint64_t kExtendedOffsetAt = 235;
 constexpr std::uint64_t kNumExtendedRecordsAt = 243;
 constexpr std::uint64_t kNumPointsAt = 247;
 
 constexpr std::uint64_t kHeaderSize14 = 375;  // [bytes]
 constexpr std::uint16_t kWktBit = 1 << 4;
+constexpr std::uint16_t kWaveformsInsideBit = 1 << 1;
 constexpr std::uint8_t kCompressionBits = 0xc0;
 
 template <Scalar T>
@@ -53,28 +55,52 @@ void read_version(ByteReader& file, LasHeader& header) {
         file, kVersionAt,
         "LAS version " + std::to_string(major) + "." + std::to_string(header.minor_version) + ", expected 1.0 to 1.4");
   }
+  header.has_flags = header.minor_version >= 1;
   header.prefers_wkt = (read_at<std::uint16_t>(file, kGlobalEncodingAt) & kWktBit) != 0;
+}
+
+// Formats from 6 on came with version 1.4, whatever the file says.
+bool is_of_14(const LasHeader& header) { return header.minor_version >= 4 || header.format.classification_at == 16; }
+
+// Points need nothing of the header but where they begin: a size that cannot be costs the records behind it.
+void check_size(ByteReader& file, LasHeader& header) {
+  const std::uint64_t least = is_of_14(header) ? kHeaderSize14 : kLasHeaderSize;
+  const std::uint64_t least_offset = header.size < least ? kLasHeaderSize : least;
+  if (header.points_offset < least_offset || header.points_offset > file.size()) {
+    fail_at(file, kPointsOffsetAt,
+            "points begin at byte " + std::to_string(header.points_offset) + ", expected " +
+                std::to_string(least_offset) + " to " + std::to_string(file.size()));
+  }
+  if (header.size >= least && header.size <= header.points_offset) return;
+  add_finding(header.findings,
+              {"the header cannot be of " + std::to_string(header.size) + " bytes, expected " + std::to_string(least) +
+                   " to " + std::to_string(header.points_offset) + ": its variable length records are not read",
+               0, "byte " + std::to_string(kHeaderSizeAt), true});
+  header.num_records = 0;
+}
+
+// Whether the fields that version 1.4 added are there, although the size of the header may be wrong.
+bool has_fields_of_14(const LasHeader& header) {
+  const bool is_shorter = header.size >= kLasHeaderSize && header.size < kHeaderSize14;
+  return is_of_14(header) && header.points_offset >= kHeaderSize14 && !(is_shorter && header.legacy_num_points != 0);
 }
 
 void read_sections(ByteReader& file, LasHeader& header) {
   header.size = read_at<std::uint16_t>(file, kHeaderSizeAt);
-  const std::uint64_t least_size = header.minor_version >= 4 ? kHeaderSize14 : kLasHeaderSize;
-  if (header.size < least_size) {
-    fail_at(file, kHeaderSizeAt,
-            "header of " + std::to_string(header.size) + " bytes, expected at least " + std::to_string(least_size) +
-                " in LAS 1." + std::to_string(header.minor_version));
-  }
   header.points_offset = read_at<std::uint32_t>(file, kPointsOffsetAt);
-  if (header.points_offset < header.size || header.points_offset > file.size()) {
-    fail_at(file, kPointsOffsetAt,
-            "points begin at byte " + std::to_string(header.points_offset) + ", expected " +
-                std::to_string(header.size) + " to " + std::to_string(file.size()));
-  }
   header.num_records = read_at<std::uint32_t>(file, kNumRecordsAt);
-  if (header.minor_version >= 4) {
-    header.extended_offset = read_at<std::uint64_t>(file, kExtendedOffsetAt);
-    header.num_extended_records = read_at<std::uint32_t>(file, kNumExtendedRecordsAt);
+  const auto legacy = read_at<std::uint32_t>(file, kLegacyNumPointsAt);
+  header.legacy_num_points = legacy == std::numeric_limits<std::uint32_t>::max() ? kUnknownLasCount : legacy;
+  check_size(file, header);
+  const bool has_waveforms = (read_at<std::uint16_t>(file, kGlobalEncodingAt) & kWaveformsInsideBit) != 0;
+  if (header.minor_version >= 3 && has_waveforms && header.points_offset >= kWaveformsOffsetAt + 8) {
+    const auto offset = read_at<std::uint64_t>(file, kWaveformsOffsetAt);
+    header.waveforms_offset = offset <= file.size() ? offset : 0;
   }
+  if (!has_fields_of_14(header)) return;
+  header.extended_offset = read_at<std::uint64_t>(file, kExtendedOffsetAt);
+  header.num_extended_records = read_at<std::uint32_t>(file, kNumExtendedRecordsAt);
+  header.num_points = read_at<std::uint64_t>(file, kNumPointsAt);
 }
 
 void read_point_format(ByteReader& file, LasHeader& header) {
@@ -94,24 +120,6 @@ void read_point_format(ByteReader& file, LasHeader& header) {
   }
 }
 
-void read_num_points(ByteReader& file, LasHeader& header) {
-  std::uint64_t at = kLegacyNumPointsAt;
-  header.num_points = read_at<std::uint32_t>(file, at);
-  if (header.minor_version >= 4) {
-    const auto num_points = read_at<std::uint64_t>(file, kNumPointsAt);
-    if (num_points != 0) {
-      header.num_points = num_points;
-      at = kNumPointsAt;
-    }
-  }
-  const std::uint64_t num_held = (file.size() - header.points_offset) / header.record_length;
-  if (header.num_points > num_held) {
-    fail_at(file, at,
-            "the header promises " + std::to_string(header.num_points) + " points of " +
-                std::to_string(header.record_length) + " bytes, the file holds " + std::to_string(num_held));
-  }
-}
-
 void read_quantization(ByteReader& file, LasHeader& header) {
   for (int axis = 0; axis < 3; ++axis) {
     const std::uint64_t scale_at = kScaleAt + 8 * static_cast<std::uint64_t>(axis);
@@ -126,33 +134,21 @@ void read_quantization(ByteReader& file, LasHeader& header) {
   }
 }
 
-LasRecord read_record(ByteReader& file, bool is_extended) {
-  LasRecord record;
-  file.skip(2);
-  record.user = file.bytes(16);
-  record.user = record.user.substr(0, record.user.find('\0'));
-  record.id = file.read_le<std::uint16_t>();
-  const std::uint64_t length = is_extended ? file.read_le<std::uint64_t>() : file.read_le<std::uint16_t>();
-  file.skip(32);
-  record.data = file.bytes(length);
-  return record;
-}
-
 }  // namespace
 
 std::optional<LasPointFormat> find_las_point_format(unsigned format) {
   static const std::array<LasPointFormat, 11> kFormats = {{
-      {20, 15, 0x1f, {}, {}},
-      {28, 15, 0x1f, 20, {}},
-      {26, 15, 0x1f, {}, 20},
-      {34, 15, 0x1f, 20, 28},
-      {57, 15, 0x1f, 20, {}},
-      {63, 15, 0x1f, 20, 28},
-      {30, 16, 0xff, 22, {}},
-      {36, 16, 0xff, 22, 30},
-      {38, 16, 0xff, 22, 30},
-      {59, 16, 0xff, 22, {}},
-      {67, 16, 0xff, 22, 30},
+      {20, 15, 0x1f, 15, 0x80, {}, {}},
+      {28, 15, 0x1f, 15, 0x80, 20, {}},
+      {26, 15, 0x1f, 15, 0x80, {}, 20},
+      {34, 15, 0x1f, 15, 0x80, 20, 28},
+      {57, 15, 0x1f, 15, 0x80, 20, {}},
+      {63, 15, 0x1f, 15, 0x80, 20, 28},
+      {30, 16, 0xff, 15, 0x04, 22, {}},
+      {36, 16, 0xff, 15, 0x04, 22, 30},
+      {38, 16, 0xff, 15, 0x04, 22, 30},
+      {59, 16, 0xff, 15, 0x04, 22, {}},
+      {67, 16, 0xff, 15, 0x04, 22, 30},
   }};
   return format < kFormats.size() ? std::optional(kFormats[format]) : std::nullopt;
 }
@@ -163,27 +159,7 @@ LasHeader read_las_header(ByteReader& file) {
   read_point_format(file, header);
   read_sections(file, header);
   read_quantization(file, header);
-  read_num_points(file, header);
   return header;
-}
-
-std::vector<LasRecord> read_las_records(ByteReader& file, const LasHeader& header) {
-  std::vector<LasRecord> records;
-  file.seek(header.size);
-  for (std::uint64_t i = 0; i < header.num_records; ++i) {
-    const std::uint64_t begin = file.offset();
-    records.push_back(read_record(file, false));
-    if (file.offset() > header.points_offset) {
-      fail_at(file, begin,
-              "variable length record " + std::to_string(i) + " runs into the points, which begin at byte " +
-                  std::to_string(header.points_offset));
-    }
-  }
-  if (header.num_extended_records == 0) return records;
-
-  file.seek(header.extended_offset);
-  for (std::uint64_t i = 0; i < header.num_extended_records; ++i) records.push_back(read_record(file, true));
-  return records;
 }
 
 }  // namespace vdbmap

@@ -1,12 +1,16 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include <algorithm>
+#include <string>
 #include <utility>
 #include <vector>
 
 #include "vdbmap/core/error.h"
 #include "vdbmap/io/byte_reader.h"
+#include "vdbmap/io/coordinate_kind.h"
 #include "vdbmap/io/las.h"
 #include "vdbmap/io/las_header.h"
+#include "vdbmap/io/las_point_count.h"
+#include "vdbmap/io/las_records.h"
 #include "vdbmap/io/las_reference_system.h"
 #include "vdbmap/io/point_cloud_filter.h"
 
@@ -82,21 +86,59 @@ void refuse_compression(const std::filesystem::path& path, const std::vector<Las
   }
 }
 
+// Of the points in the file, in their order.
+std::vector<bool> read_withheld(const char* first_record, const LasHeader& header) {
+  if (!header.has_flags) return std::vector<bool>(header.num_points);
+  std::vector<bool> is_withheld;
+  for (std::uint64_t i = 0; i < header.num_points; ++i) {
+    const auto flags = load<std::uint8_t>(first_record + i * header.record_length + header.format.withheld_at);
+    is_withheld.push_back((flags & header.format.withheld_mask) != 0);
+  }
+  return is_withheld;
+}
+
+// LAS 1.4-R15, table 9: such a point "should not be included in processing".
+void drop_withheld(const std::filesystem::path& path, const std::vector<bool>& is_withheld, ReadResult& read) {
+  std::vector<std::size_t> places;  // among those left
+  auto dropped = read.dropped.begin();
+  std::size_t first = 0;  // point in the file, from 1
+  for (std::size_t i = 0, place = 0; i < is_withheld.size(); ++i) {
+    if (dropped != read.dropped.end() && *dropped == i) {
+      ++dropped;
+      continue;
+    }
+    if (is_withheld[i]) {
+      if (places.empty()) first = i + 1;
+      places.push_back(place);
+    }
+    ++place;
+  }
+  if (places.size() == read.cloud.size()) throw IoError::malformed(path, "all of its points are withheld");
+  drop_points(read, places, {"withheld points left out", places.size(), "point " + std::to_string(first)});
+}
+
 }  // namespace
 
 ReadResult read_las(const std::filesystem::path& path) {
   ByteReader file(path);
-  const LasHeader header = read_las_header(file);
-  const std::vector<LasRecord> records = read_las_records(file, header);
-  refuse_compression(path, records);
-  const LasReferenceSystem system = find_reference_system(path, header, records);
+  LasHeader header = read_las_header(file);
+  const LasRecords records = read_las_records(file, header);
+  refuse_compression(path, records.records);
+  const LasReferenceSystem system = find_reference_system(header, records.records);
+  const LasPointCount count = count_las_points(file, header, records);
+  header.num_points = count.num_points;
 
   file.seek(header.points_offset);
-  const std::string_view points = file.bytes(header.num_points * header.record_length);
-  ReadResult result = finish_reading(path, read_points(points.data(), header));
+  const char* first_record = file.bytes(header.num_points * header.record_length).data();
+  ReadResult result = finish_reading(path, read_points(first_record, header));
+  for (const auto& findings : {header.findings, records.findings, system.findings, count.findings}) {
+    result.findings.insert(result.findings.end(), findings.begin(), findings.end());
+  }
+  drop_withheld(path, read_withheld(first_record, header), result);
   result.epsg = system.epsg;
   if (!result.cloud.labels.empty()) result.label_scheme = LabelScheme::kAsprs;
   result.metres_per_unit = system.metres_per_unit.value_or(1.0);
+  check_coordinates(path, result, system.kind);
   return result;
 }
 

@@ -6,7 +6,8 @@
 #include <map>
 #include <string>
 
-#include "vdbmap/core/error.h"
+#include "vdbmap/io/byte_reader.h"
+#include "vdbmap/io/geodetic_codes.h"
 #include "vdbmap/io/wkt.h"
 
 namespace vdbmap {
@@ -22,18 +23,22 @@ constexpr unsigned kGeographicTypeKey = 2048;
 constexpr unsigned kProjectedTypeKey = 3072;
 constexpr unsigned kProjectedUnitKey = 3076;
 constexpr unsigned kModelIsProjected = 1;
+constexpr unsigned kModelIsGeographic = 2;
+constexpr unsigned kModelIsGeocentric = 3;
 
 constexpr double kFoot = 0.3048;                // [m]
 constexpr double kUsSurveyFoot = 1200. / 3937;  // [m]
 
 using GeoKeys = std::map<unsigned, unsigned>;
 
-// The keys whose value stands in the directory itself.
-GeoKeys parse_geo_keys(const std::filesystem::path& path, std::string_view data) {
-  const auto number = [data](std::size_t index) { return load<std::uint16_t>(data.data() + 2 * index); };
-  const std::size_t num_held = data.size() / 8;  // the first is the directory's header
-  if (num_held == 0 || number(3) > num_held - 1) throw IoError::malformed(path, "the GeoTIFF keys are cut off");
+// Whether the directory holds all the keys that it counts; the first of its rows is its header.
+bool has_all_geo_keys(std::string_view data) {
+  return data.size() >= 8 && load<std::uint16_t>(data.data() + 6) <= data.size() / 8 - 1;
+}
 
+// The keys of a whole directory whose value stands in the directory itself.
+GeoKeys parse_geo_keys(std::string_view data) {
+  const auto number = [data](std::size_t index) { return load<std::uint16_t>(data.data() + 2 * index); };
   GeoKeys keys;
   for (std::size_t i = 4; i < 4 * (std::size_t{1} + number(3)); i += 4) {
     if (number(i + 1) == 0) keys[number(i)] = number(i + 3);
@@ -76,28 +81,49 @@ std::optional<double> metres_per_unit_of(const GeoKeys& keys) {
   return std::nullopt;
 }
 
+// A model of degrees may stand beside a projected code, and the code of degrees where that of a projection belongs.
+CoordinateKind kind_of_keys(const GeoKeys& keys) {
+  const auto model = find_key(keys, kModelTypeKey);
+  const auto projected = find_key(keys, kProjectedTypeKey);
+  if (model == kModelIsGeocentric) return CoordinateKind::kGeocentric;
+  if (projected && is_geodetic_epsg(static_cast<int>(*projected))) return CoordinateKind::kGeographic;
+  if (model == kModelIsGeographic) return CoordinateKind::kGeographic;
+  if (model == kModelIsProjected || projected) return CoordinateKind::kProjected;
+  return find_key(keys, kGeographicTypeKey) ? CoordinateKind::kGeographic : CoordinateKind::kUnknown;
+}
+
+LasReferenceSystem read_geo_keys(std::string_view data) {
+  if (!has_all_geo_keys(data)) return {{}, {}, {}, {{"the GeoTIFF keys are cut off and not used", 0, "", true}}};
+  const GeoKeys keys = parse_geo_keys(data);
+  return {epsg_of(keys), metres_per_unit_of(keys), kind_of_keys(keys), {}};
+}
+
+LasReferenceSystem read_wkt(std::string_view data) {
+  const WktReferenceSystem parsed = parse_wkt(data);
+  if (is_whole_wkt(data)) return {parsed.epsg, parsed.metres_per_unit, parsed.kind, {}};
+  return {{}, {}, parsed.kind, {{"the WKT of the reference system is damaged and not used", 0, "", true}}};
+}
+
+// What one record says, filled up by what the other says.
+LasReferenceSystem join_systems(LasReferenceSystem system, const LasReferenceSystem& other) {
+  if (!system.epsg) system.epsg = other.epsg;
+  if (!system.metres_per_unit) system.metres_per_unit = other.metres_per_unit;
+  if (system.kind == CoordinateKind::kUnknown) system.kind = other.kind;
+  for (const ReadFinding& finding : other.findings) add_finding(system.findings, finding);
+  return system;
+}
+
 }  // namespace
 
-LasReferenceSystem find_reference_system(const std::filesystem::path& path, const LasHeader& header,
-                                         const std::vector<LasRecord>& records) {
+LasReferenceSystem find_reference_system(const LasHeader& header, const std::vector<LasRecord>& records) {
   LasReferenceSystem geotiff;
   LasReferenceSystem wkt;
   for (const LasRecord& record : records) {
     if (record.user != kProjectionUser) continue;
-    if (record.id == kGeoKeysId) {
-      const GeoKeys keys = parse_geo_keys(path, record.data);
-      geotiff = {epsg_of(keys), metres_per_unit_of(keys)};
-    }
-    if (record.id == kWktId) {
-      const WktReferenceSystem parsed = parse_wkt(record.data);
-      wkt = {parsed.epsg, parsed.metres_per_unit};
-    }
+    if (record.id == kGeoKeysId) geotiff = read_geo_keys(record.data);
+    if (record.id == kWktId) wkt = read_wkt(record.data);
   }
-
-  LasReferenceSystem system = header.prefers_wkt ? wkt : geotiff;
-  const LasReferenceSystem& other = header.prefers_wkt ? geotiff : wkt;
-  if (!system.epsg) system.epsg = other.epsg;
-  if (!system.metres_per_unit) system.metres_per_unit = other.metres_per_unit;
+  LasReferenceSystem system = header.prefers_wkt ? join_systems(wkt, geotiff) : join_systems(geotiff, wkt);
   if (!system.metres_per_unit) system.metres_per_unit = metres_per_unit_of(system.epsg);
   return system;
 }

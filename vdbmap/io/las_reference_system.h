@@ -1,11 +1,11 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #pragma once
 
-#include <filesystem>
 #include <optional>
 #include <vector>
 
-#include "vdbmap/io/las_header.h"
+#include "vdbmap/io/coordinate_kind.h"
+#include "vdbmap/io/las_records.h"
 
 namespace vdbmap {
 
@@ -13,11 +13,11 @@ namespace vdbmap {
 struct LasReferenceSystem {
   std::optional<int> epsg;
   std::optional<double> metres_per_unit;
+  CoordinateKind kind = CoordinateKind::kUnknown;
+  std::vector<ReadFinding> findings;  ///< damaged records, which say nothing
 };
 
 /// Reads the GeoTIFF keys and the WKT record; the one that the header prefers wins, the other fills what it lacks.
-/// Throws IoError where the GeoTIFF keys are cut off.
-LasReferenceSystem find_reference_system(const std::filesystem::path& path, const LasHeader& header,
-                                         const std::vector<LasRecord>& records);
+LasReferenceSystem find_reference_system(const LasHeader& header, const std::vector<LasRecord>& records);
 
 }  // namespace vdbmap

@@ -16,6 +16,8 @@ namespace {
 constexpr std::array<std::string_view, 3> kProjected = {"PROJCS", "PROJCRS", "PROJECTEDCRS"};
 constexpr std::array<std::string_view, 5> kGeographic = {"GEOGCS", "GEOGCRS", "GEOGRAPHICCRS", "GEODCRS",
                                                          "GEODETICCRS"};
+constexpr std::array<std::string_view, 1> kGeocentric = {"GEOCCS"};
+constexpr std::array<std::string_view, 1> kCoordinateSystem = {"CS"};
 constexpr std::array<std::string_view, 4> kWrappers = {"COMPD_CS", "COMPOUNDCRS", "BOUNDCRS", "SOURCECRS"};
 constexpr std::array<std::string_view, 2> kIdentifiers = {"AUTHORITY", "ID"};
 constexpr std::array<std::string_view, 2> kLengthUnits = {"UNIT", "LENGTHUNIT"};
@@ -114,15 +116,42 @@ std::optional<double> metres_per_unit_of(const std::vector<Node>& children) {
   return axis ? metres_per_unit_of(outer_nodes(axis->body)) : std::nullopt;
 }
 
+// Newer texts have one keyword for degrees and for axes through the centre of the earth.
+CoordinateKind kind_of_geodetic(const std::vector<Node>& children) {
+  const auto axes = find_node(children, kCoordinateSystem);
+  const bool is_cartesian = axes && axes->body.starts_with("Cartesian");
+  return is_cartesian ? CoordinateKind::kGeocentric : CoordinateKind::kGeographic;
+}
+
 }  // namespace
 
 WktReferenceSystem parse_wkt(std::string_view wkt) {
   if (const auto projected = find_in_wrappers(wkt, kProjected)) {
     const std::vector<Node> children = outer_nodes(projected->body);
-    return {epsg_of(children), metres_per_unit_of(children)};
+    return {epsg_of(children), metres_per_unit_of(children), CoordinateKind::kProjected};
   }
-  if (const auto geographic = find_in_wrappers(wkt, kGeographic)) return {epsg_of(outer_nodes(geographic->body)), {}};
+  if (const auto geographic = find_in_wrappers(wkt, kGeographic)) {
+    const std::vector<Node> children = outer_nodes(geographic->body);
+    return {epsg_of(children), {}, kind_of_geodetic(children)};
+  }
+  if (const auto geocentric = find_in_wrappers(wkt, kGeocentric)) {
+    return {epsg_of(outer_nodes(geocentric->body)), {}, CoordinateKind::kGeocentric};
+  }
   return {};
+}
+
+bool is_whole_wkt(std::string_view wkt) {
+  int depth = 0;
+  bool has_nodes = false;
+  bool in_quotes = false;
+  for (const char c : wkt) {
+    if (c == '"') in_quotes = !in_quotes;
+    if (in_quotes) continue;
+    if (c == '[' || c == '(') ++depth;
+    if ((c == ']' || c == ')') && --depth < 0) return false;
+    has_nodes |= depth > 0;
+  }
+  return has_nodes && depth == 0 && !in_quotes;
 }
 
 }  // namespace vdbmap
