@@ -7,13 +7,9 @@
 
 #include <Eigen/Core>
 
-namespace vdbmap::registration {
+#include "vdbmap/core/range_limits.h"
 
-/// Distances from the sensor at which points are used [m].
-struct RangeLimits {
-  double min = 1.0;
-  double max = 100.0;
-};
+namespace vdbmap::registration {
 
 /// The positions in the scan of the points that sample_points() returns. Throws std::invalid_argument for 2^32 points
 /// or more.

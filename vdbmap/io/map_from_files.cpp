@@ -7,16 +7,23 @@
 
 #include "vdbmap/core/error.h"
 #include "vdbmap/io/label_file.h"
+#include "vdbmap/io/point_cloud_filter.h"
 
 namespace vdbmap {
 namespace {
 
+struct ReadScan {
+  ReadResult read;
+  std::size_t num_out_of_range = 0;
+};
+
 // The reader serves one scan at a time: the one before must have been taken.
-std::future<ReadResult> start_reading(ScanReader& reader, const MapInput& input, bool reads_ahead) {
-  return std::async(reads_ahead ? std::launch::async : std::launch::deferred, [&reader, &input] {
-    ReadResult read = reader.read(input.scan);
-    if (input.labels) attach_labels(read, *input.labels);
-    return read;
+std::future<ReadScan> start_reading(ScanReader& reader, const MapInput& input, const MapFromFilesOptions& options) {
+  return std::async(options.reads_ahead ? std::launch::async : std::launch::deferred, [&reader, &input, &options] {
+    ReadScan scan{reader.read(input.scan)};
+    if (input.labels) attach_labels(scan.read, *input.labels);
+    if (options.range && input.map_from_scan) scan.num_out_of_range = drop_out_of_range(scan.read, *options.range);
+    return scan;
   });
 }
 
@@ -92,12 +99,13 @@ MapFromFiles build_map_from_files(const std::vector<MapInput>& inputs, const Map
   MapFromFiles result;
   SchemeNotes schemes;
   ScanReader reader(read_options(inputs, options.read));
-  std::future<ReadResult> next = start_reading(reader, inputs.front(), options.reads_ahead);
+  std::future<ReadScan> next = start_reading(reader, inputs.front(), options);
   for (std::size_t i = 0; i < inputs.size(); ++i) {
-    const ReadResult read = next.get();
+    const auto [read, num_out_of_range] = next.get();
     const bool is_last = i + 1 == inputs.size();
-    if (!is_last) next = start_reading(reader, inputs[i + 1], options.reads_ahead);
+    if (!is_last) next = start_reading(reader, inputs[i + 1], options);
     note(result, inputs[i], read);
+    result.num_out_of_range += num_out_of_range;
     if (!read.cloud.labels.empty()) schemes.note(inputs[i].scan.file, options.label_scheme.value_or(read.label_scheme));
     if (is_last) {
       result.map = finish(builder, inputs[i], read.cloud);
@@ -106,6 +114,7 @@ MapFromFiles build_map_from_files(const std::vector<MapInput>& inputs, const Map
     }
     options.on_scan_done();
   }
+  if (result.num_points == 0) throw std::invalid_argument("no point of the scans is within the range");
   result.map.label_scheme = schemes.of_all();
   if (!result.map.frame.epsg) result.map.frame.epsg = result.epsg_of_files;
   return result;

@@ -10,6 +10,7 @@
 #include <Eigen/Geometry>
 
 #include "vdbmap/core/map_builder.h"
+#include "vdbmap/core/range_limits.h"
 #include "vdbmap/io/scan_sequence.h"
 
 namespace vdbmap {
@@ -27,6 +28,7 @@ struct MapFromFilesOptions {
   BuildOptions build;                          ///< without `epsg`, that of the files in map coordinates is taken
   std::optional<LabelScheme> label_scheme;     ///< whose numbers labels are, instead of what the files' formats say
   ReadOptions read;                            ///< `is_in_sensor_frame` as the inputs have poses
+  std::optional<RangeLimits> range;            ///< of the points of inputs with poses, from their sensor
   bool reads_ahead = true;                     ///< a thread of its own reads the next scan while one is folded
   std::function<void()> on_scan_done = [] {};  ///< called after each scan
 };
@@ -37,17 +39,12 @@ struct ForeignUnit {
   double metres_per_unit = 1.0;
 };
 
-/// What was noticed while one of the files was read.
-struct FileFinding {
-  std::filesystem::path file;
-  ReadFinding finding;
-};
-
 /// A map, and what was noticed in the files.
 struct MapFromFiles {
   VoxelMap map;
   std::size_t num_points = 0;
   std::size_t num_dropped = 0;             ///< points with a coordinate that is not finite
+  std::size_t num_out_of_range = 0;        ///< points that the range left out
   std::vector<FileFinding> findings;       ///< what else was left out or is doubtful, in the order of the files
   std::optional<int> epsg_of_files;        ///< of the files in map coordinates, where one says so
   std::vector<ForeignUnit> foreign_units;  ///< taken as they are, as if in metres
@@ -55,7 +52,7 @@ struct MapFromFiles {
 
 /// The map of all points in the scans. At most two scans are in memory at once. Throws IoError naming the scan
 /// that cannot be read, lies beyond the addressable range, or has another EPSG code or label scheme than one before;
-/// and std::invalid_argument for no inputs or bad options.
+/// and std::invalid_argument for no inputs, bad options and a range that leaves no point.
 MapFromFiles build_map_from_files(const std::vector<MapInput>& inputs, const MapFromFilesOptions& options = {});
 
 }  // namespace vdbmap

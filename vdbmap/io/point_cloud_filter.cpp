@@ -11,10 +11,11 @@
 namespace vdbmap {
 namespace {
 
-std::vector<std::size_t> places_of_non_finite(const std::vector<Eigen::Vector3d>& positions) {
+template <typename Predicate>
+std::vector<std::size_t> places_where(const std::vector<Eigen::Vector3d>& positions, Predicate&& predicate) {
   std::vector<std::size_t> places;
   for (std::size_t i = 0; i < positions.size(); ++i) {
-    if (!positions[i].allFinite()) places.push_back(i);
+    if (predicate(positions[i])) places.push_back(i);
   }
   return places;
 }
@@ -58,18 +59,44 @@ std::vector<std::size_t> places_among_all(std::span<const std::size_t> places, s
 }  // namespace
 
 std::vector<std::size_t> drop_non_finite(PointCloud& cloud) {
-  std::vector<std::size_t> dropped = places_of_non_finite(cloud.positions);
+  std::vector<std::size_t> dropped =
+      places_where(cloud.positions, [](const Eigen::Vector3d& point) { return !point.allFinite(); });
   remove_points(cloud, dropped);
   return dropped;
 }
 
-void drop_points(ReadResult& read, std::span<const std::size_t> places, const ReadFinding& finding) {
+void drop_points(ReadResult& read, std::span<const std::size_t> places) {
   if (places.empty()) return;
   const std::vector<std::size_t> added = places_among_all(places, read.dropped);
   const auto middle = read.dropped.insert(read.dropped.end(), added.begin(), added.end());
   std::inplace_merge(read.dropped.begin(), middle, read.dropped.end());
   remove_points(read.cloud, places);
+}
+
+void drop_points(ReadResult& read, std::span<const std::size_t> places, const ReadFinding& finding) {
+  if (places.empty()) return;
+  drop_points(read, places);
   add_finding(read.findings, finding);
+}
+
+void drop_points_at_origin(const std::filesystem::path& path, ReadResult& read, bool is_in_sensor_frame) {
+  constexpr double kNearerThanAnyReturn = 0.01;  // [m]
+  const double radius = is_in_sensor_frame ? kNearerThanAnyReturn : 0;
+  const std::vector<std::size_t> places = places_where(
+      read.cloud.positions, [radius](const Eigen::Vector3d& point) { return point.squaredNorm() <= radius * radius; });
+  if (places.size() < (is_in_sensor_frame ? 1U : 2U)) return;
+  if (places.size() == read.cloud.size())
+    throw IoError::malformed(path, "all of its points lie at the sensor's origin");
+  drop_points(read, places, {"points at the sensor's origin, beams without a return, left out", places.size()});
+}
+
+std::size_t drop_out_of_range(ReadResult& read, const RangeLimits& limits) {
+  const std::vector<std::size_t> places = places_where(read.cloud.positions, [&](const Eigen::Vector3d& point) {
+    const double range = point.norm();
+    return range < limits.min || range > limits.max;
+  });
+  drop_points(read, places);
+  return places.size();
 }
 
 ReadResult finish_reading(const std::filesystem::path& path, PointCloud cloud) {

@@ -15,7 +15,7 @@ namespace vdbmap {
 
 namespace {
 
-ReadResult read_any(const std::filesystem::path& path, [[maybe_unused]] const ReadOptions& options) {
+ReadResult read_any(const std::filesystem::path& path, const ReadOptions& options) {
   switch (detect_point_format(path)) {
     case PointFormat::kPly:
       return read_ply(path);
@@ -28,21 +28,9 @@ ReadResult read_any(const std::filesystem::path& path, [[maybe_unused]] const Re
     case PointFormat::kXyz:
       return read_xyz(path);
     case PointFormat::kVlp16Pcap:
-      return read_vlp16_pcap(path);
+      return read_vlp16_pcap(path, options);
   }
   throw IoError::malformed(path, "not a point file");
-}
-
-// A sensor measures no point where it is itself: that is how many drivers write a beam without a return. Elsewhere one
-// such point may be meant, as the corner of a model.
-void drop_points_at_origin(ReadResult& read, const std::filesystem::path& path, bool is_in_sensor_frame) {
-  std::vector<std::size_t> places;
-  for (std::size_t i = 0; i < read.cloud.size(); ++i) {
-    if (read.cloud.positions[i].isZero(0)) places.push_back(i);
-  }
-  if (places.size() < (is_in_sensor_frame ? 1U : 2U)) return;
-  drop_points(read, places, {"points at the sensor's origin, beams without a return, left out", places.size()});
-  if (read.cloud.empty()) throw IoError::malformed(path, "all of its points lie at the sensor's origin");
 }
 
 }  // namespace
@@ -55,7 +43,7 @@ void refuse_damage(const std::filesystem::path& path, const std::vector<ReadFind
 
 ReadResult read_points(const std::filesystem::path& path, const ReadOptions& options) {
   ReadResult read = read_any(path, options);
-  drop_points_at_origin(read, path, options.is_in_sensor_frame);
+  drop_points_at_origin(path, read, options.is_in_sensor_frame);
   if (options.strict) refuse_damage(path, read.findings);
   return read;
 }

@@ -9,13 +9,15 @@
 #include "vdbmap/core/label_scheme.h"
 #include "vdbmap/core/point_cloud.h"
 #include "vdbmap/io/read_finding.h"
+#include "vdbmap/io/sensor_choice.h"
 
 namespace vdbmap {
 
 /// How point files are read.
 struct ReadOptions {
   bool strict = false;              ///< damage is an error, not a finding
-  bool is_in_sensor_frame = false;  ///< then a single point at the origin is no measurement; else two of them are none
+  bool is_in_sensor_frame = false;  ///< then points at the origin are no measurements: see drop_points_at_origin()
+  std::optional<SensorChoice> sensor = {};  ///< of a packet capture; nothing: the first
 };
 
 /// What a point file held.
@@ -37,8 +39,19 @@ ReadResult read_points(const std::filesystem::path& path, const ReadOptions& opt
 /// What strict reading does with damage: throws IoError with the first finding that is one.
 void refuse_damage(const std::filesystem::path& path, const std::vector<ReadFinding>& findings);
 
+/// Point files, and what in their folders was left out.
+struct PointFiles {
+  std::vector<std::filesystem::path> files;
+  std::vector<FileFinding> findings;  ///< each of a folder
+};
+
 /// The point files that `inputs` name, in order: a file stands for itself, a folder for the point files directly in it,
-/// sorted by name with numbers in numeric order. Throws IoError for a missing input or a folder without any.
+/// in the order of comes_before(). Text in a folder may be anything: tables beside scans of binary formats, and those
+/// that hold poses, positions of the vehicle, times and the like, are no scans; .txt files are scans only where the
+/// folder holds no others. Throws IoError for a missing input or a folder without any.
+PointFiles find_point_files(const std::vector<std::filesystem::path>& inputs);
+
+/// The files alone.
 std::vector<std::filesystem::path> list_point_files(const std::vector<std::filesystem::path>& inputs);
 
 }  // namespace vdbmap

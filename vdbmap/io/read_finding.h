@@ -2,6 +2,7 @@
 #pragma once
 
 #include <cstddef>
+#include <filesystem>
 #include <string>
 #include <vector>
 
@@ -18,6 +19,12 @@ struct ReadFinding {
   std::string text() const;
 
   bool operator==(const ReadFinding&) const = default;
+};
+
+/// What was noticed of one of several files.
+struct FileFinding {
+  std::filesystem::path file;
+  ReadFinding finding;
 };
 
 /// Adds a finding to those of the same file, or counts it to one that says the same of other things.

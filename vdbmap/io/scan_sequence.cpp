@@ -1,20 +1,29 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "vdbmap/io/scan_sequence.h"
 
+#include <stdexcept>
 #include <utility>
 
 #include "vdbmap/core/error.h"
+#include "vdbmap/io/point_cloud_filter.h"
 #include "vdbmap/io/point_format.h"
 #include "vdbmap/io/vlp16_turn_reader.h"
 
 namespace vdbmap {
 namespace {
 
-std::size_t count_turns(const std::filesystem::path& capture) {
-  Vlp16TurnReader turns(capture);
-  std::size_t count = 0;
-  while (turns.next()) ++count;
-  return count;
+// 0 where the capture cannot be read.
+std::size_t count_turns(const std::filesystem::path& capture, const ReadOptions& options) {
+  try {
+    Vlp16TurnReader turns(capture, options.sensor);
+    std::size_t count = 0;
+    while (turns.next()) ++count;
+    if (options.strict) refuse_damage(capture, turns.take_findings());
+    return count;
+  } catch (const IoError& error) {
+    if (error.kind() != IoError::Kind::kMalformed) throw;
+    return 0;
+  }
 }
 
 // A file of no known content is no capture: reading it says what is wrong with it.
@@ -33,15 +42,18 @@ std::string ScanPlace::name() const {
   return turn ? file.string() + ", turn " + std::to_string(*turn + 1) : file.string();
 }
 
-std::vector<ScanPlace> list_scans(const std::vector<std::filesystem::path>& files) {
+std::vector<ScanPlace> list_scans(const std::vector<std::filesystem::path>& files, const ReadOptions& options) {
   std::vector<ScanPlace> scans;
+  bool has_captures = false;
   for (const std::filesystem::path& file : files) {
-    if (!is_capture(file)) {
-      scans.push_back({file, std::nullopt});
-      continue;
-    }
-    const std::size_t num_turns = count_turns(file);
+    const bool is_of_turns = is_capture(file);
+    has_captures |= is_of_turns;
+    const std::size_t num_turns = is_of_turns ? count_turns(file, options) : 0;
     for (std::size_t turn = 0; turn < num_turns; ++turn) scans.push_back({file, turn});
+    if (num_turns == 0) scans.push_back({file, std::nullopt});
+  }
+  if (options.sensor && !has_captures) {
+    throw std::invalid_argument("sensor " + text_of(*options.sensor) + " is chosen, but no file is a packet capture");
   }
   return scans;
 }
@@ -53,19 +65,24 @@ ScanReader& ScanReader::operator=(ScanReader&&) noexcept = default;
 
 ReadResult ScanReader::read(const ScanPlace& scan) {
   if (!scan.turn) return read_points(scan.file, options_);
-  ReadResult result;
-  result.cloud = read_turn(scan);
-  return result;
+  ReadResult read = read_turn(scan);
+  drop_points_at_origin(scan.file, read, options_.is_in_sensor_frame);
+  if (options_.strict) refuse_damage(scan.file, read.findings);
+  return read;
 }
 
-PointCloud ScanReader::read_turn(const ScanPlace& scan) {
+ReadResult ScanReader::read_turn(const ScanPlace& scan) {
   if (!turns_ || capture_ != scan.file || *scan.turn < next_turn_) {
-    turns_ = std::make_unique<Vlp16TurnReader>(scan.file);
+    turns_ = std::make_unique<Vlp16TurnReader>(scan.file, options_.sensor);
     capture_ = scan.file;
     next_turn_ = 0;
   }
   while (auto turn = turns_->next()) {
-    if (next_turn_++ == *scan.turn) return std::move(*turn);
+    if (next_turn_++ != *scan.turn) continue;
+    ReadResult read;
+    read.cloud = std::move(*turn);
+    read.findings = turns_->take_findings();
+    return read;
   }
   throw IoError::malformed(scan.file,
                            "has no turn " + std::to_string(*scan.turn + 1) + ", only " + std::to_string(next_turn_));

@@ -26,9 +26,10 @@ struct ScanPlace {
 };
 
 /// The scans in the point files, in order: each file is one, of a Velodyne capture each turn that has points. To count
-/// its turns a capture is decoded once, one turn at a time; damage in it shows here already, that of other files when
-/// they are read. Throws IoError.
-std::vector<ScanPlace> list_scans(const std::vector<std::filesystem::path>& files);
+/// its turns a capture is decoded once, one turn at a time. A capture without a turn that the options allow is one
+/// scan: reading it says what is wrong with it. Throws IoError where a file cannot be opened, and std::invalid_argument
+/// where the options choose a sensor and no file is a capture.
+std::vector<ScanPlace> list_scans(const std::vector<std::filesystem::path>& files, const ReadOptions& options = {});
 
 /// Reads scans of a sequence. In the order of the sequence, left-out scans included, each capture is gone through once;
 /// going back in a capture starts it anew. One scan is in memory at a time.
@@ -39,11 +40,12 @@ class ScanReader {
   ScanReader(ScanReader&&) noexcept;
   ScanReader& operator=(ScanReader&&) noexcept;
 
-  /// Throws IoError as read_points() does, and for a turn that the capture does not have.
+  /// Throws IoError as read_points() does, and for a turn that the capture does not have. What is found in a capture
+  /// comes with the first turn that is read after its place.
   ReadResult read(const ScanPlace& scan);
 
  private:
-  PointCloud read_turn(const ScanPlace& scan);
+  ReadResult read_turn(const ScanPlace& scan);
 
   ReadOptions options_;
   std::filesystem::path capture_;  // that `turns_` reads

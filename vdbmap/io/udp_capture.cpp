@@ -95,7 +95,7 @@ std::optional<UdpDatagram> udp_datagram(Bytes ip) {
 
 void UdpCapture::Closer::operator()(pcap* capture) const { pcap_close(capture); }
 
-UdpCapture::UdpCapture(const std::filesystem::path& path) : path_(path) {
+UdpCapture::UdpCapture(const std::filesystem::path& path) {
   std::error_code ignored;
   // Opening a named pipe would wait for its writer.
   if (std::filesystem::exists(path, ignored) && !std::filesystem::is_regular_file(path, ignored)) {
@@ -119,19 +119,21 @@ UdpCapture::UdpCapture(const std::filesystem::path& path) : path_(path) {
 }
 
 std::optional<UdpDatagram> UdpCapture::next() {
-  while (true) {
+  while (damage_.empty()) {
     pcap_pkthdr* header = nullptr;
     const std::uint8_t* bytes = nullptr;
     const int status = pcap_next_ex(capture_.get(), &header, &bytes);
     if (status == PCAP_ERROR_BREAK) return std::nullopt;
     ++packet_number_;
     if (status != 1) {
-      throw IoError::malformed(path_, "packet " + std::to_string(packet_number_) + ": " + pcap_geterr(capture_.get()));
+      damage_ = "packet " + std::to_string(packet_number_) + ": " + pcap_geterr(capture_.get());
+      break;
     }
 
     const auto datagram = udp_datagram(ipv4_packet(link_type_, Bytes(bytes, header->caplen)));
     if (datagram) return datagram;
   }
+  return std::nullopt;
 }
 
 }  // namespace vdbmap

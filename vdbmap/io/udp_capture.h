@@ -7,6 +7,7 @@
 #include <memory>
 #include <optional>
 #include <span>
+#include <string>
 
 struct pcap;
 
@@ -34,8 +35,11 @@ class UdpCapture {
   /// loopback or Linux cooked.
   explicit UdpCapture(const std::filesystem::path& path);
 
-  /// The next datagram, nothing at the end. Throws IoError with the packet where the file is cut off or damaged.
+  /// The next datagram, nothing at the end, which comes early where the file is cut off or damaged.
   std::optional<UdpDatagram> next();
+
+  /// Why the end came early: "packet 75: truncated dump file ..."; empty at the end of a whole file.
+  const std::string& damage() const { return damage_; }
 
   /// Number of the packet that next() read last, from 1.
   std::uint64_t packet_number() const { return packet_number_; }
@@ -45,8 +49,8 @@ class UdpCapture {
     void operator()(pcap* capture) const;
   };
 
-  std::filesystem::path path_;
   std::unique_ptr<pcap, Closer> capture_;
+  std::string damage_;
   int link_type_ = 0;
   std::uint64_t packet_number_ = 0;
 };

@@ -76,16 +76,6 @@ const Sensor* find_sensor(std::uint8_t product) {
   }
 }
 
-std::string sensor_name(std::uint8_t product) {
-  std::array<char, 8> hexadecimal{};
-  std::snprintf(hexadecimal.data(), hexadecimal.size(), "0x%02x", static_cast<unsigned>(product));
-  const std::string id = "product id " + std::string(hexadecimal.data());
-  if (product == 0x28) return "VLP-32C (" + id + ")";
-  if (product == 0x31) return "Velarray (" + id + ")";
-  if (product == 0x63 || product == 0xa1) return "VLS-128 (" + id + ")";
-  return id;
-}
-
 std::uint16_t little_endian_16(VelodynePayload payload, std::size_t at) {
   return static_cast<std::uint16_t>(payload[at] | payload[at + 1] << 8);
 }
@@ -111,6 +101,19 @@ std::vector<int> azimuth_steps(VelodynePayload payload, std::size_t blocks_per_f
   }
   steps.push_back(median);  // the block after the last one is in the next packet
   return steps;
+}
+
+// How far the sensor turned from the first data block to the last [0.01 deg]. It turns one way, so that one azimuth
+// which is wrong costs a whole turn, but a sensor at rest trembles.
+int turn_of_blocks(VelodynePayload payload) {
+  constexpr int kTremor = 20;  // [0.01 deg]
+  int turn = 0;
+  for (std::size_t block = 1; block < kVelodyneBlocks; ++block) {
+    const int step = velodyne_azimuth(payload, block) - velodyne_azimuth(payload, block - 1);
+    const bool is_tremor = step < 0 && step >= -kTremor;
+    turn += is_tremor ? step : (step + kFullTurn) % kFullTurn;
+  }
+  return turn;
 }
 
 struct Echo {
@@ -165,9 +168,27 @@ void decode_group(VelodynePayload payload, const Sensor& sensor, const BlockGrou
 
 bool is_velodyne_packet(VelodynePayload payload) { return block_flag(payload, 0) == kBlockFlag; }
 
+std::uint8_t velodyne_product(VelodynePayload payload) { return payload[kProductAt]; }
+
+bool is_supported_velodyne(std::uint8_t product) { return find_sensor(product) != nullptr; }
+
+std::string velodyne_name(std::uint8_t product) {
+  std::array<char, 8> hexadecimal{};
+  std::snprintf(hexadecimal.data(), hexadecimal.size(), "0x%02x", static_cast<unsigned>(product));
+  const std::string id = "product id " + std::string(hexadecimal.data());
+  if (product == 0x21) return "HDL-32E";
+  if (product == 0x22) return "VLP-16";
+  if (product == 0x24) return "Puck Hi-Res";
+  if (product == 0x28) return "VLP-32C (" + id + ")";
+  if (product == 0x31) return "Velarray (" + id + ")";
+  if (product == 0x63 || product == 0xa1) return "VLS-128 (" + id + ")";
+  return id;
+}
+
 std::optional<std::string> velodyne_packet_defect(VelodynePayload payload) {
-  if (find_sensor(payload[kProductAt]) == nullptr) {
-    return "sensor " + sensor_name(payload[kProductAt]) + " is not supported, only VLP-16, Puck Hi-Res and HDL-32E";
+  if (!is_supported_velodyne(velodyne_product(payload))) {
+    return "sensor " + velodyne_name(velodyne_product(payload)) +
+           " is not supported, only VLP-16, Puck Hi-Res and HDL-32E";
   }
   const std::uint8_t mode = payload[kReturnModeAt];
   if (mode < 0x37 || mode > kDualReturn) {
@@ -180,6 +201,7 @@ std::optional<std::string> velodyne_packet_defect(VelodynePayload payload) {
              ", expected 0..35999";
     }
   }
+  if (turn_of_blocks(payload) >= kFullTurn) return "the azimuths of its data blocks do not rise";
   return std::nullopt;
 }
 

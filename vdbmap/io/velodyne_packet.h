@@ -32,6 +32,15 @@ constexpr std::size_t kVelodyneBlocks = 12;
 /// Whether a payload is a data packet of a Velodyne sensor at all: it begins with a data block's flag.
 bool is_velodyne_packet(VelodynePayload payload);
 
+/// The number by which the sensor names itself.
+std::uint8_t velodyne_product(VelodynePayload payload);
+
+/// Whether the sensors of a product can be decoded.
+bool is_supported_velodyne(std::uint8_t product);
+
+/// "VLP-16", and for others "product id 0x63" or what is known of it.
+std::string velodyne_name(std::uint8_t product);
+
 /// Why a data packet cannot be decoded (sensor not supported, damaged block); nothing where it can.
 std::optional<std::string> velodyne_packet_defect(VelodynePayload payload);
 

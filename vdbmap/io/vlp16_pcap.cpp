@@ -18,10 +18,11 @@ void append(PointCloud& cloud, const PointCloud& turn) {
 
 }  // namespace
 
-ReadResult read_vlp16_pcap(const std::filesystem::path& path) {
+ReadResult read_vlp16_pcap(const std::filesystem::path& path, const ReadOptions& options) {
   ReadResult result;
-  Vlp16TurnReader turns(path);
+  Vlp16TurnReader turns(path, options.sensor);
   while (const auto turn = turns.next()) append(result.cloud, *turn);
+  result.findings = turns.take_findings();
   return result;
 }
 

@@ -17,12 +17,12 @@ namespace vdbmap {
 // to the firing of each laser.
 //
 // Rings count from the lowest laser, intensities are calibrated reflectivities 0..255, times [s] count from the hour in
-// which the capture began, and on over the next. Where several sensors were captured, the first on port 2368 is
-// decoded, else the first.
+// which the capture began, and on over the next. Where several sensors were captured, one is decoded: the one that is
+// chosen, else the first on port 2368, else the first; the findings name the others.
 
-/// Reads all points of a capture. Throws IoError for damage, a sensor that is not supported, and where there are no
-/// points.
-ReadResult read_vlp16_pcap(const std::filesystem::path& path);
+/// Reads all points of a capture. Damaged packets are left out, and what follows where the file itself is damaged, and
+/// the findings say so. Throws IoError for a sensor that is not supported, and where there are no points.
+ReadResult read_vlp16_pcap(const std::filesystem::path& path, const ReadOptions& options = {});
 
 /// As read_vlp16_pcap(), but one cloud a turn: each begins with the data block in which the azimuth passes 0. The first
 /// and the last turn are as incomplete as the capture has them.

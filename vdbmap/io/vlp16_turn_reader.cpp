@@ -9,46 +9,33 @@
 namespace vdbmap {
 namespace {
 
-constexpr std::uint16_t kUsualPort = 2368;
 // [0.01 deg] An azimuth that falls by less is a packet that came late, not a new turn.
 constexpr int kLeastFallOfNewTurn = 2000;
 
-struct VelodynePacket {
-  UdpSource source;
-  VelodynePayload payload;
-};
+constexpr std::size_t kPositionPacketSize = 512;  // [bytes]
 
-std::string place_in(const UdpCapture& capture) { return "packet " + std::to_string(capture.packet_number()) + ": "; }
-
-// The next data packet of any Velodyne sensor, nothing at the end.
-std::optional<VelodynePacket> next_packet(UdpCapture& capture, const std::filesystem::path& path) {
-  while (const auto datagram = capture.next()) {
-    if (datagram->full_size != kVelodynePacketSize) continue;
-    if (datagram->payload.size() < kVelodynePacketSize) {
-      throw IoError::malformed(path, place_in(capture) + "only " + std::to_string(datagram->payload.size()) +
-                                         " of 1206 bytes were captured");
-    }
-    const VelodynePayload payload = datagram->payload.first<kVelodynePacketSize>();
-    if (is_velodyne_packet(payload)) return VelodynePacket{datagram->source, payload};
+// The sensor that is meant among those of the capture.
+VelodyneSensor meant_sensor(const std::filesystem::path& path, const std::vector<VelodyneSensor>& sensors,
+                            const std::optional<SensorChoice>& choice) {
+  const auto sensor = choose_sensor(sensors, choice);
+  if (sensor) return *sensor;
+  if (sensors.empty()) return {};
+  std::string known;
+  for (const VelodyneSensor& other : sensors) {
+    known += (known.empty() ? "" : ", ") + text_of(choice_of(other, sensors));
   }
-  return std::nullopt;
+  throw IoError::malformed(path, "no sensor at " + text_of(*choice) + ", only " + known);
 }
 
-IoError no_points(const std::filesystem::path& path, const UdpCapture& capture) {
-  return IoError::malformed(path, "holds no points: no returns in Velodyne data packets among " +
-                                      std::to_string(capture.packet_number()) + " packets");
-}
-
-// The first sensor on the usual port, else the first.
-UdpSource choose_sensor(const std::filesystem::path& path) {
-  UdpCapture capture(path);
-  std::optional<UdpSource> first;
-  while (const auto packet = next_packet(capture, path)) {
-    if (packet->source.destination_port == kUsualPort) return packet->source;
-    if (!first) first = packet->source;
+// Why a datagram of the sensor cannot be decoded, nothing where it can.
+std::optional<std::string> datagram_defect(const UdpDatagram& datagram) {
+  if (datagram.full_size != kVelodynePacketSize) {
+    return std::to_string(datagram.full_size) + " bytes, expected " + std::to_string(kVelodynePacketSize);
   }
-  if (!first) throw no_points(path, capture);
-  return *first;
+  if (datagram.payload.size() < kVelodynePacketSize) {
+    return "only " + std::to_string(datagram.payload.size()) + " of 1206 bytes were captured";
+  }
+  return velodyne_packet_defect(datagram.payload.first<kVelodynePacketSize>());
 }
 
 }  // namespace
@@ -61,15 +48,21 @@ double Vlp16TurnReader::HourClock::seconds(std::uint32_t microseconds_after_hour
   return static_cast<double>(start_of_hour_ + now) * 1e-6;
 }
 
-Vlp16TurnReader::Vlp16TurnReader(const std::filesystem::path& path)
-    : path_(path), sensor_(choose_sensor(path)), capture_(path) {}
+Vlp16TurnReader::Vlp16TurnReader(const std::filesystem::path& path, const std::optional<SensorChoice>& sensor)
+    : path_(path), capture_(path) {
+  const std::vector<VelodyneSensor> sensors = list_velodyne_sensors(path);
+  sensor_ = meant_sensor(path, sensors, sensor);
+  if (!sensor) findings_ = findings_of_others(sensors, sensor_);
+}
+
+std::vector<ReadFinding> Vlp16TurnReader::take_findings() { return std::exchange(findings_, {}); }
 
 std::optional<PointCloud> Vlp16TurnReader::next() {
   while (finished_.empty() && read_packet()) {
   }
   if (finished_.empty() && !current_.empty()) finished_.push_back(std::exchange(current_, {}));
   if (finished_.empty()) {
-    if (!has_points_) throw no_points(path_, capture_);
+    if (!has_points_) fail_without_points();
     return std::nullopt;
   }
   PointCloud turn = std::move(finished_.front());
@@ -79,14 +72,39 @@ std::optional<PointCloud> Vlp16TurnReader::next() {
 
 // False at the end of the capture.
 bool Vlp16TurnReader::read_packet() {
-  const auto packet = next_packet(capture_, path_);
-  if (!packet) return false;
-  if (packet->source != sensor_) return true;
-  if (const auto defect = velodyne_packet_defect(packet->payload)) {
-    throw IoError::malformed(path_, place_in(capture_) + *defect);
+  const auto datagram = capture_.next();
+  if (!datagram) {
+    note_end();
+    return false;
   }
-  decode(packet->payload);
+  if (datagram->source != sensor_.source || datagram->full_size == kPositionPacketSize) return true;
+  if (const auto defect = datagram_defect(*datagram)) {
+    note_damage({"damaged data packets left out", 1,
+                 "packet " + std::to_string(capture_.packet_number()) + ": " + *defect, true});
+    return true;
+  }
+  const VelodynePayload payload = datagram->payload.first<kVelodynePacketSize>();
+  if (velodyne_product(payload) == sensor_.product) decode(payload);
   return true;
+}
+
+void Vlp16TurnReader::note_end() {
+  if (has_ended_) return;
+  has_ended_ = true;
+  if (!capture_.damage().empty()) {
+    note_damage({"the capture is cut off or damaged, its rest is left out", 0, capture_.damage(), true});
+  }
+}
+
+void Vlp16TurnReader::note_damage(const ReadFinding& finding) {
+  if (first_damage_.empty()) first_damage_ = finding.first;
+  add_finding(findings_, finding);
+}
+
+void Vlp16TurnReader::fail_without_points() const {
+  if (!first_damage_.empty()) throw IoError::malformed(path_, first_damage_);
+  throw IoError::malformed(path_, "holds no points: no returns in Velodyne data packets among " +
+                                      std::to_string(capture_.packet_number()) + " packets");
 }
 
 std::array<std::uint64_t, kVelodyneBlocks> Vlp16TurnReader::turns_of_blocks(VelodynePayload payload) {

@@ -7,11 +7,15 @@
 #include <deque>
 #include <filesystem>
 #include <optional>
+#include <string>
 #include <vector>
 
 #include "vdbmap/core/point_cloud.h"
+#include "vdbmap/io/read_finding.h"
+#include "vdbmap/io/sensor_choice.h"
 #include "vdbmap/io/udp_capture.h"
 #include "vdbmap/io/velodyne_packet.h"
+#include "vdbmap/io/velodyne_sensors.h"
 
 namespace vdbmap {
 
@@ -19,12 +23,16 @@ namespace vdbmap {
 /// memory.
 class Vlp16TurnReader {
  public:
-  /// Throws IoError where the file is no capture, or cannot be read up to the packets of the sensor.
-  explicit Vlp16TurnReader(const std::filesystem::path& path);
+  /// Throws IoError where the file is no capture, or holds no data packets of a sensor that is meant.
+  explicit Vlp16TurnReader(const std::filesystem::path& path, const std::optional<SensorChoice>& sensor = {});
 
-  /// The next turn that has points, nothing at the end. Throws IoError for damage, a sensor that is not supported, and
-  /// at the end of a capture without points.
+  /// The next turn that has points, nothing at the end. Packets that are damaged are left out, and so is what follows
+  /// where the file itself is. Throws IoError at the end of a capture without points, with the first damage where there
+  /// was any.
   std::optional<PointCloud> next();
+
+  /// What was noticed since the last call.
+  std::vector<ReadFinding> take_findings();
 
  private:
   // Continues microseconds after the hour over the hour's end.
@@ -38,12 +46,15 @@ class Vlp16TurnReader {
   };
 
   bool read_packet();
+  void note_end();
+  void note_damage(const ReadFinding& finding);
+  [[noreturn]] void fail_without_points() const;
   std::array<std::uint64_t, kVelodyneBlocks> turns_of_blocks(VelodynePayload payload);
   void decode(VelodynePayload payload);
   void add(const VelodyneReturn& received, double packet_time, std::uint64_t turn);
 
   std::filesystem::path path_;
-  UdpSource sensor_;
+  VelodyneSensor sensor_;
   UdpCapture capture_;
   HourClock clock_;
   int latest_azimuth_ = 0;  // [0.01 deg]
@@ -53,6 +64,9 @@ class Vlp16TurnReader {
   PointCloud current_;
   std::deque<PointCloud> finished_;  // a packet may end more than one
   bool has_points_ = false;
+  bool has_ended_ = false;
+  std::string first_damage_;
+  std::vector<ReadFinding> findings_;
 };
 
 }  // namespace vdbmap

@@ -74,6 +74,30 @@ TEST_F(MapFromFilesTest, APoseMovesTheScan) {
                  [](const VoxelIndex& voxel, std::size_t) { EXPECT_EQ(voxel, VoxelIndex(-1, 10, 70)); });
 }
 
+TEST_F(MapFromFilesTest, TheRangeIsMeasuredFromTheSensor) {
+  PointCloud cloud;
+  cloud.positions = {{1.5, 0, 0}, {0, 2, 0}, {0, 0, -2.5}, {3, 4, 0}, {3, 4, 0.1}};
+  cloud.labels = {1, 2, 3, 4, 5};
+  MapInput input = ply("a.ply", cloud);
+  write_labels(folder_ / "a.label", {{11, 0}, {12, 0}, {13, 0}, {14, 0}, {15, 0}});
+  input.labels = folder_ / "a.label";
+  input.map_from_scan = Eigen::Translation3d(1000, 0, 0);
+  MapFromFilesOptions options;
+  options.range = {2, 5};
+  const MapFromFiles built = build_map_from_files({input}, options);
+  EXPECT_EQ(built.num_points, 3U);
+  EXPECT_EQ(built.num_out_of_range, 2U);
+  std::vector<std::int32_t> labels = built.map.finest().channels().labels;
+  std::ranges::sort(labels);
+  EXPECT_EQ(labels, (std::vector<std::int32_t>{12, 13, 14}));
+
+  input.map_from_scan = std::nullopt;  // no sensor is known to measure from
+  EXPECT_EQ(build_map_from_files({input}, options).num_points, 5U);
+  input.map_from_scan = Eigen::Isometry3d::Identity();
+  options.range = {50, 60};
+  EXPECT_THROW(build_map_from_files({input}, options), std::invalid_argument);
+}
+
 TEST_F(MapFromFilesTest, TellsWhatTheFilesHeld) {
   write_raw(folder_ / "holes.xyz", "1 1 1\n2 nan 2\n");
   write_las(folder_ / "a.las", line(10, {0, 0, 0}), {.epsg = 25832});

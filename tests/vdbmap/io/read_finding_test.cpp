@@ -47,6 +47,19 @@ TEST_F(PointsAtTheOrigin, AreNoMeasurementsOfASensor) {
   EXPECT_FALSE(one.findings[0].is_damage);
 }
 
+TEST_F(PointsAtTheOrigin, AreThoseThatNoSensorCanMeasureForTheyAreTooNear) {
+  const ReadResult result = read("0.001 -0.002 1e-9\n1 2 3\n0 0 -0.009\n0.0099 0.002 0\n0.05 0 0\n", true);
+  EXPECT_EQ(result.cloud.positions, (std::vector<Eigen::Vector3d>{{1, 2, 3}, {0.0099, 0.002, 0}, {0.05, 0, 0}}));
+  EXPECT_EQ(result.dropped, (std::vector<std::size_t>{0, 2}));
+}
+
+TEST_F(PointsAtTheOrigin, AndThoseThatAreNotFiniteKeepTheirPlacesInTheFile) {
+  const ReadResult result = read("nan nan nan\n0 0 0\n1 2 3\n0 0 0\nnan 0 0\n4 5 6\n", true);
+  EXPECT_EQ(result.dropped, (std::vector<std::size_t>{0, 1, 3, 4}));
+  EXPECT_EQ(result.num_non_finite, 2U);
+  EXPECT_EQ(result.cloud.size(), 2U);
+}
+
 TEST_F(PointsAtTheOrigin, MayBeOneOfAModelButNotTwo) {
   EXPECT_EQ(read("1 2 3\n0 0 0\n", false).cloud.size(), 2U);
   EXPECT_EQ(read("-0 0 0\n1 2 3\n0 0 0\n", false).cloud.size(), 1U);

@@ -12,6 +12,7 @@
 #include <gtest/gtest.h>
 
 #include "tests/support/folders.h"
+#include "tests/support/raw_files.h"
 #include "tests/support/vlp16_packets.h"
 #include "vdbmap/core/error.h"
 #include "vdbmap/io/byte_reader.h"
@@ -202,7 +203,11 @@ TEST_F(Vlp16Pcap, OtherTrafficIsPassedOver) {
       1, {ethernet(test::ipv4_udp_packet(std::string(512, 'p'), 8308)), ethernet(test::ipv4_udp_packet("")),
           ethernet(""), "", "x", ethernet(test::ipv4_udp_packet(std::string(1206, 'v'))), ethernet(fragment),
           ethernet(tcp), ethernet(short_header), ethernet(test::ipv4_udp_packet(payload))});
-  EXPECT_EQ(read_vlp16_pcap(write(capture)).cloud.positions, read_room({}).positions);
+  const ReadResult result = read_vlp16_pcap(write(capture));
+  // Two datagrams came from the sensor to its port and hold no data.
+  EXPECT_EQ(result.findings,
+            (std::vector<ReadFinding>{{"damaged data packets left out", 2, "packet 2: 0 bytes, expected 1206", true}}));
+  EXPECT_EQ(result.cloud.positions, read_room({}).positions);
 }
 
 TEST_F(Vlp16Pcap, OneSensorOfSeveralIsDecoded) {
@@ -221,19 +226,93 @@ TEST_F(Vlp16Pcap, OneSensorOfSeveralIsDecoded) {
   EXPECT_EQ(read_vlp16_pcap(path_).cloud.positions, expected);
 }
 
-TEST_F(Vlp16Pcap, TruncationAnywhereGivesFewerPointsOrAnError) {
+TEST_F(Vlp16Pcap, OtherSensorsAreNamedAndCanBeChosen) {
+  const auto frame = [](const std::string& payload, std::uint16_t port, std::uint8_t source) {
+    return test::link_frame(1, test::ipv4_udp_packet(payload, port, source));
+  };
+  // Three VLP-16, and one Puck Hi-Res that has the address of the first, as both left their factory.
+  const std::vector<Vlp16Recording> recordings = {{.start_azimuth_deg = 10},
+                                                  {.start_azimuth_deg = 20},
+                                                  {.start_azimuth_deg = 30},
+                                                  {.start_azimuth_deg = 40, .product = 0x24}};
+  std::vector<std::string> payloads;
+  std::vector<PointCloud> expected;
+  for (const Vlp16Recording& recording : recordings) {
+    payloads.push_back(test::vlp16_payloads(room_, recording)[0]);
+    expected.push_back(read_room(recording));
+  }
+  write(test::pcap_file(1, {frame(payloads[0], 2368, 201), frame(payloads[1], 2368, 202), frame(payloads[2], 2369, 202),
+                            frame(payloads[1], 2368, 202), frame(payloads[3], 2368, 201)}));
+
+  const ReadResult first = read_vlp16_pcap(path_);
+  EXPECT_EQ(first.cloud.positions, expected[0].positions);
+  const auto left_out = [](const std::string& place) {
+    return "a second sensor at " + place + " is left out: --sensor " + place + " chooses it";
+  };
+  EXPECT_EQ(first.findings,
+            (std::vector<ReadFinding>{{left_out("192.168.1.202:2368"), 0, "VLP-16, 2 data packets"},
+                                      {left_out("192.168.1.202:2369"), 0, "VLP-16, 1 data packets"},
+                                      {left_out("192.168.1.201:2368/0x24"), 0, "Puck Hi-Res, 1 data packets"}}));
+
+  const auto points_of = [&](const std::string& choice) {
+    const ReadResult result = read_vlp16_pcap(path_, {.sensor = parse_sensor_choice(choice)});
+    EXPECT_TRUE(result.findings.empty()) << choice;
+    return result.cloud.positions;
+  };
+  EXPECT_EQ(points_of("192.168.1.201"), expected[0].positions);
+  EXPECT_EQ(points_of("192.168.1.201:2368/0x24"), expected[3].positions);
+  EXPECT_EQ(points_of("192.168.1.202").size(), 2 * expected[1].size());
+  EXPECT_EQ(points_of("192.168.1.202:2369"), expected[2].positions);
+  EXPECT_EQ(
+      test::io_error_of([&] { points_of("192.168.1.7"); }),
+      "room.pcap: no sensor at 192.168.1.7, only 192.168.1.201:2368/0x22, 192.168.1.202:2368, 192.168.1.202:2369, "
+      "192.168.1.201:2368/0x24");
+}
+
+TEST_F(Vlp16Pcap, ASensorThatCanBeDecodedComesBeforeOneThatCannot) {
+  const std::string ours = test::vlp16_payloads(room_, {})[0];
+  std::string other = ours;
+  other[1205] = '\x28';
+  write(test::pcap_file(1, {test::link_frame(1, test::ipv4_udp_packet(other, 2368, 9)),
+                            test::link_frame(1, test::ipv4_udp_packet(ours, 2369, 8))}));
+  const ReadResult result = read_vlp16_pcap(path_);
+  EXPECT_EQ(result.cloud.size(), 384U);
+  ASSERT_EQ(result.findings.size(), 1U);
+  EXPECT_EQ(result.findings[0].first, "VLP-32C (product id 0x28), 1 data packets");
+}
+
+TEST_F(Vlp16Pcap, TruncationAnywhereLeavesTheWholePacketsOrIsAnError) {
   const std::string whole = test::ethernet_capture(test::vlp16_payloads(room_, {.num_packets = 2}));
   constexpr std::size_t kFirstPacketEnd = 24 + 16 + 42 + 1206;
 
   write(whole);
   for (std::size_t size = whole.size() - 1; size > 0; --size) {
     std::filesystem::resize_file(path_, size);
-    if (size == kFirstPacketEnd) {
-      EXPECT_EQ(read_vlp16_pcap(path_).cloud.size(), 384U);
-    } else {
+    if (size < kFirstPacketEnd) {
       EXPECT_THROW(read_vlp16_pcap(path_), IoError) << size;
       EXPECT_THROW(read_vlp16_scans(path_), IoError) << size;
+      continue;
     }
+    const ReadResult result = read_vlp16_pcap(path_);
+    EXPECT_EQ(result.cloud.size(), 384U);
+    EXPECT_EQ(read_vlp16_scans(path_).size(), 1U);
+    EXPECT_EQ(result.findings.size(), size == kFirstPacketEnd ? 0U : 1U) << size;
+  }
+}
+
+TEST_F(Vlp16Pcap, WhatFollowsADamagedRecordIsLeftOut) {
+  const std::vector<std::string> payloads = test::vlp16_payloads(room_, {.num_packets = 3});
+  const PointCloud first = read_room({});
+  std::string capture = test::ethernet_capture(payloads);
+  const std::size_t second_record_at = 24 + 16 + 42 + 1206;
+  for (const char* length : {"\xff\xff\xff\xff", "\xff\xff\xff\x7f", "\x00\x00\x01\x00"}) {
+    capture.replace(second_record_at + 8, 4, length, 4);
+    const ReadResult result = read_vlp16_pcap(write(capture));
+    EXPECT_EQ(result.cloud.positions, first.positions);
+    ASSERT_EQ(result.findings.size(), 1U);
+    EXPECT_EQ(result.findings[0].what, "the capture is cut off or damaged, its rest is left out");
+    EXPECT_EQ(result.findings[0].first.substr(0, 10), "packet 2: ");
+    EXPECT_TRUE(result.findings[0].is_damage);
   }
 }
 
@@ -252,23 +331,64 @@ TEST_F(Vlp16Pcap, AnyDamagedByteOfHeadersIsReadOrRefusedButNeverCrashes) {
   }
 }
 
-TEST_F(Vlp16Pcap, ErrorsNamePacketAndReason) {
-  const std::string payload = test::vlp16_payloads(room_, {})[0];
-  const auto error_after = [&](std::size_t at, const std::string& bytes) {
-    std::string damaged = payload;
-    damaged.replace(at, bytes.size(), bytes);
-    return error_for(test::ethernet_capture({payload, damaged}));
-  };
+// A value overwritten in a data packet, and what is then wrong with it.
+struct PacketDamage {
+  std::size_t at;
+  std::string bytes;
+  std::string defect;
+};
 
-  EXPECT_EQ(error_after(300, "\xff\xdd"), path_.string() + ": packet 2: data block 3 lacks its flag");
-  EXPECT_EQ(error_after(102, "\xa0\x8c"),
-            path_.string() + ": packet 2: azimuth 36000 of data block 1, expected 0..35999");
-  EXPECT_EQ(error_after(1204, "\x3a"),
-            path_.string() + ": packet 2: return mode 58, expected 55 (strongest), 56 (last) or 57 (dual)");
-  EXPECT_EQ(error_after(1205, "\x28"),
-            path_.string() +
-                ": packet 2: sensor VLP-32C (product id 0x28) is not supported, only VLP-16, "
-                "Puck Hi-Res and HDL-32E");
+const std::vector<PacketDamage> kPacketDamages = {
+    {0, std::string(2, '\0'), "data block 0 lacks its flag"},
+    {300, "\xff\xdd", "data block 3 lacks its flag"},
+    {102, "\xa0\x8c", "azimuth 36000 of data block 1, expected 0..35999"},
+    {502, std::string("\x00\x00", 2), "the azimuths of its data blocks do not rise"},
+    {502, "\x9f\x8c", "the azimuths of its data blocks do not rise"},  // 359.99 degrees
+    {1204, "\x3a", "return mode 58, expected 55 (strongest), 56 (last) or 57 (dual)"},
+    {1205, "\x28", "sensor VLP-32C (product id 0x28) is not supported, only VLP-16, Puck Hi-Res and HDL-32E"}};
+
+TEST_F(Vlp16Pcap, ADamagedPacketIsLeftOutAndNamed) {
+  std::vector<std::string> payloads = test::vlp16_payloads(room_, {.num_packets = 5, .start_azimuth_deg = 90});
+  const std::vector<std::string> whole = payloads;
+  payloads.erase(payloads.begin() + 2);
+  const PointCloud expected = read_vlp16_pcap(write(test::ethernet_capture(payloads))).cloud;
+
+  for (const PacketDamage& damage : kPacketDamages) {
+    payloads = whole;
+    payloads[2].replace(damage.at, damage.bytes.size(), damage.bytes);
+    const ReadResult result = read_vlp16_pcap(write(test::ethernet_capture(payloads)));
+    EXPECT_EQ(result.cloud.positions, expected.positions) << damage.defect;
+    EXPECT_EQ(result.cloud.times, expected.times) << damage.defect;
+    EXPECT_EQ(result.findings,
+              (std::vector<ReadFinding>{{"damaged data packets left out", 1, "packet 3: " + damage.defect, true}}));
+  }
+  for (const std::size_t size : {1000, 1205, 1207}) {
+    payloads = whole;
+    payloads[2].resize(size);
+    const ReadResult result = read_vlp16_pcap(write(test::ethernet_capture(payloads)));
+    EXPECT_EQ(result.cloud.positions, expected.positions) << size;
+    EXPECT_EQ(result.findings[0].first, "packet 3: " + std::to_string(size) + " bytes, expected 1206");
+  }
+}
+
+TEST_F(Vlp16Pcap, WithoutAWholePacketTheFirstDefectIsTheError) {
+  for (const PacketDamage& damage : kPacketDamages) {
+    std::string payload = test::vlp16_payloads(room_, {.start_azimuth_deg = 90})[0];
+    payload.replace(damage.at, damage.bytes.size(), damage.bytes);
+    if (damage.at == 0) continue;  // then nothing says that it is Velodyne's
+    EXPECT_EQ(error_for(test::ethernet_capture({payload, payload})), path_.string() + ": packet 1: " + damage.defect);
+  }
+}
+
+TEST_F(Vlp16Pcap, ASectorThatEndsWithinAPacketIsNoDamage) {
+  std::string payload = test::vlp16_payloads(room_, {.start_azimuth_deg = 40})[0];
+  for (std::size_t block = 6; block < 12; ++block) {  // from 41.2 degrees on to 320
+    const auto azimuth = static_cast<std::uint16_t>(32000 + 40 * block);
+    std::memcpy(payload.data() + block * 100 + 2, &azimuth, 2);
+  }
+  const ReadResult result = read_vlp16_pcap(write(test::ethernet_capture({payload})));
+  EXPECT_EQ(result.cloud.size(), 384U);
+  EXPECT_TRUE(result.findings.empty());
 }
 
 TEST_F(Vlp16Pcap, PacketsCutOffByTheCaptureAreAnError) {
