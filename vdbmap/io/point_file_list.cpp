@@ -1,89 +1,119 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include <algorithm>
+#include <cctype>
 #include <string>
-#include <string_view>
 #include <system_error>
 
 #include "vdbmap/core/error.h"
 #include "vdbmap/io/point_format.h"
 #include "vdbmap/io/point_reader.h"
+#include "vdbmap/io/scan_order.h"
+#include "vdbmap/io/table_kind.h"
 
 namespace vdbmap {
 namespace {
 
 using Path = std::filesystem::path;
 
-bool is_digit(char c) { return c >= '0' && c <= '9'; }
-
-// Cuts the digits off the front of `rest`, without leading zeros.
-std::string_view cut_number(std::string_view& rest) {
-  const std::size_t length = std::min(rest.find_first_not_of("0123456789"), rest.size());
-  std::string_view digits = rest.substr(0, length);
-  rest.remove_prefix(length);
-  digits.remove_prefix(std::min(digits.find_first_not_of('0'), digits.size()));
-  return digits;
+std::string extension_of(const Path& path) {
+  std::string extension = path.extension().string();
+  for (char& c : extension) c = static_cast<char>(std::tolower(static_cast<unsigned char>(c)));
+  return extension;
 }
 
-// Negative, zero or positive as `a` comes before, with or after `b`.
-int compare_naturally(std::string_view a, std::string_view b) {
-  while (!a.empty() && !b.empty()) {
-    if (is_digit(a.front()) && is_digit(b.front())) {
-      const std::string_view number_a = cut_number(a);
-      const std::string_view number_b = cut_number(b);
-      if (number_a.size() != number_b.size()) return number_a.size() < number_b.size() ? -1 : 1;
-      if (const int order = number_a.compare(number_b); order != 0) return order;
-    } else {
-      if (a.front() != b.front()) return a.front() < b.front() ? -1 : 1;
-      a.remove_prefix(1);
-      b.remove_prefix(1);
-    }
-  }
-  return static_cast<int>(b.empty()) - static_cast<int>(a.empty());
-}
+bool is_text_format(const Path& path) { return format_of_extension(path) == PointFormat::kXyz; }
+bool is_txt(const Path& path) { return extension_of(path) == ".txt"; }
 
-bool comes_before(const Path& a, const Path& b) {
-  const int order = compare_naturally(a.filename().string(), b.filename().string());
-  return order != 0 ? order < 0 : a < b;  // scan_1 and scan_01 need an order too
-}
-
-// Text may be anything in a folder of scans (poses, times), and a dot hides what is not meant.
-bool is_listed(const std::filesystem::directory_entry& entry) {
-  const Path& path = entry.path();
+// A dot hides what is not meant.
+bool may_be_listed(const std::filesystem::directory_entry& entry) {
   std::error_code ignored;
-  return entry.is_regular_file(ignored) && !path.filename().string().starts_with('.') && path.extension() != ".txt" &&
-         format_of_extension(path).has_value();
+  return entry.is_regular_file(ignored) && !entry.path().filename().string().starts_with('.') &&
+         format_of_extension(entry.path()).has_value();
 }
 
-std::vector<Path> list_folder(const Path& folder) {
+std::vector<Path> files_in(const Path& folder) {
   std::error_code error;
   std::filesystem::directory_iterator entries(folder, error);
   std::vector<Path> files;
   for (; !error && entries != std::filesystem::directory_iterator(); entries.increment(error)) {
-    if (is_listed(*entries)) files.push_back(entries->path());
+    if (may_be_listed(*entries)) files.push_back(entries->path());
   }
   if (error) throw IoError::system(folder, "cannot list", error.value());
-  if (files.empty()) {
-    throw IoError::malformed(folder, "the folder holds no point files (.ply .pcd .las .bin .xyz .csv .asc .pcap)");
-  }
   std::ranges::sort(files, comes_before);
   return files;
 }
 
+// The files of a folder by what they may be, each in their order.
+struct Candidates {
+  std::vector<Path> scans;   // of formats for points
+  std::vector<Path> tables;  // .csv, .xyz and the like
+  std::vector<Path> texts;   // .txt, which may be anything
+};
+
+Candidates sort_out(const std::vector<Path>& files) {
+  Candidates candidates;
+  for (const Path& file : files) {
+    (is_txt(file) ? candidates.texts : is_text_format(file) ? candidates.tables : candidates.scans).push_back(file);
+  }
+  return candidates;
+}
+
+// Why a table beside other scans is none, or one beside none.
+std::string reason_left_out(const Path& table, bool is_beside_scans) {
+  std::string reason = reason_no_scan(table);
+  if (!reason.empty() || !is_beside_scans || extension_of(table) != ".csv") return reason;
+  return "is a table beside scans of other formats";
+}
+
+struct Folder {
+  std::vector<Path> files;
+  std::vector<ReadFinding> left_out;
+};
+
+void add_tables(const std::vector<Path>& tables, bool is_beside_scans, Folder& folder) {
+  for (const Path& table : tables) {
+    const std::string reason = reason_left_out(table, is_beside_scans);
+    if (reason.empty()) {
+      folder.files.push_back(table);
+    } else {
+      add_finding(folder.left_out,
+                  {"text files that are no scans left out", 1, table.filename().string() + " " + reason});
+    }
+  }
+}
+
+Folder list_folder(const Path& path) {
+  const Candidates candidates = sort_out(files_in(path));
+  Folder folder{candidates.scans, {}};
+  add_tables(candidates.tables, !candidates.scans.empty(), folder);
+  if (folder.files.empty()) add_tables(candidates.texts, false, folder);
+  std::ranges::sort(folder.files, comes_before);
+  if (!folder.files.empty()) return folder;
+
+  const std::string tables = folder.left_out.empty() ? "" : "; " + folder.left_out.front().text();
+  throw IoError::malformed(path,
+                           "the folder holds no point files (.ply .pcd .las .bin .xyz .csv .asc .txt .pcap)" + tables);
+}
+
 }  // namespace
 
-std::vector<Path> list_point_files(const std::vector<Path>& inputs) {
-  std::vector<Path> files;
+PointFiles find_point_files(const std::vector<Path>& inputs) {
+  PointFiles found;
   for (const Path& input : inputs) {
     std::error_code error;
     const std::filesystem::file_status status = std::filesystem::status(input, error);
     if (!std::filesystem::exists(status)) throw IoError::system(input, "cannot open", error.value());
     if (!std::filesystem::is_directory(status)) {
-      files.push_back(input);
+      found.files.push_back(input);
       continue;
     }
-    for (const Path& file : list_folder(input)) files.push_back(file);
+    const Folder folder = list_folder(input);
+    found.files.insert(found.files.end(), folder.files.begin(), folder.files.end());
+    for (const ReadFinding& finding : folder.left_out) found.findings.push_back({input, finding});
   }
-  return files;
+  return found;
 }
+
+std::vector<Path> list_point_files(const std::vector<Path>& inputs) { return find_point_files(inputs).files; }
 
 }  // namespace vdbmap

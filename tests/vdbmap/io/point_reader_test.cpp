@@ -134,7 +134,7 @@ TEST_F(PointFileList, RefusesMissingInputsAndFoldersWithoutPoints) {
   fs::create_directory(folder_ / "empty");
   EXPECT_EQ(io_error_of([&] { list({folder_ / "missing"}); }), "missing: cannot open: No such file or directory");
   EXPECT_EQ(io_error_of([&] { list({folder_ / "empty"}); }),
-            "empty: the folder holds no point files (.ply .pcd .las .bin .xyz .csv .asc .pcap)");
+            "empty: the folder holds no point files (.ply .pcd .las .bin .xyz .csv .asc .txt .pcap)");
 }
 
 }  // namespace
