@@ -163,6 +163,11 @@ TEST_F(Build, WrongUsageIsRefusedBeforeAnyWork) {
       {"--anchor", "64,64"},
       {"--anchor", "nan,0,0"},
       {"--epsg", "0"},
+      {"--epsg", "4326"},    // degrees
+      {"--min-range", "2"},  // from which sensor
+      {"--max-range", "50"},
+      {"--sensor", "lidar"},
+      {"--sensor", "192.168.1.201"},  // of which capture
       {"--epoch", "-1"},
       {"--epoch", "1.5"},
       {"--density", "0"},

@@ -55,6 +55,29 @@ TEST_F(Capture, FewerPosesThanTurnsAreBadInput) {
                "3 poses for 4 scans");
 }
 
+TEST_F(Capture, OneThatIsCutOffOrCannotBeReadDoesNotStopTheOthers) {
+  std::filesystem::create_directory(folder_ / "captures");
+  const std::string whole = test::read_raw(capture());
+  test::write_raw(folder_ / "captures" / "1.pcap", whole.substr(0, whole.size() - 100));
+  test::write_raw(folder_ / "captures" / "2.pcap", whole.substr(0, 100));
+  test::write_raw(folder_ / "captures" / "3.pcap", whole);
+  test::write_raw(folder_ / "captures" / "poses.csv", "1 2 3\n");
+  const test::CommandResult run = vdbmap({"odometry", path("captures"), "-o", path("o.txt"), "--json"});
+  EXPECT_EQ(json::parse(run.out)["scans"], 4 + 1 + 4) << run.err;
+  EXPECT_NE(run.err.find("1.pcap: the capture is cut off or damaged, its rest is left out"), std::string::npos)
+      << run.err;
+  EXPECT_NE(run.err.find("2.pcap: no pose: "), std::string::npos) << run.err;
+  EXPECT_NE(run.err.find("captures: 1 text files that are no scans left out (poses.csv "), std::string::npos)
+      << run.err;
+}
+
+TEST_F(Capture, ASensorIsChosenByItsAddress) {
+  const std::string room = capture();
+  EXPECT_EQ(json_of({"build", room, "--sensor", "192.168.1.201:2368", "-o", path("map.vdb")})["scans"], 4);
+  expect_error(vdbmap({"build", room, "--sensor", "192.168.1.202", "-o", path("map.vdb")}), ExitCode::kBadInput,
+               "room.pcap: no sensor at 192.168.1.202, only 192.168.1.201:2368");
+}
+
 TEST_F(Capture, WithoutPosesItsPointsAreOneCloud) {
   const std::string room = capture();
   build({room}, "a.vdb");

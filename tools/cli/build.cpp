@@ -22,6 +22,7 @@
 #include "tools/cli/progress.h"
 #include "tools/cli/reading.h"
 #include "tools/cli/scan_selection.h"
+#include "vdbmap/io/geodetic_codes.h"
 #include "vdbmap/io/map_from_files.h"
 #include "vdbmap/io/point_reader.h"
 
@@ -42,6 +43,8 @@ struct BuildCommandOptions {
   std::optional<std::int32_t> epoch;
   std::optional<std::filesystem::path> labels;
   std::string label_scheme;
+  std::optional<double> min_range;  // [m]
+  std::optional<double> max_range;  // [m]
   ReadOptions read;
   MapOutput output;
 };
@@ -78,14 +81,27 @@ void add_label_options(CLI::App& app, BuildCommandOptions& options) {
       ->type_name("NAME");
 }
 
+void add_range_options(CLI::App& app, BuildCommandOptions& options, CLI::Option* poses) {
+  app.add_option("--min-range", options.min_range,
+                 "Leave out points nearer to the sensor [m], its carrier's for example; with --poses only")
+      ->check(CLI::Range(0.0, 1000.0).description(""))
+      ->type_name("R")
+      ->needs(poses);
+  app.add_option("--max-range", options.max_range, "Leave out points farther from the sensor [m]; with --poses only")
+      ->check(CLI::Range(0.0, 1e6).description(""))
+      ->type_name("R")
+      ->needs(poses);
+}
+
 void add_options(CLI::App& app, BuildCommandOptions& options) {
   app.add_option("INPUTS", options.inputs,
                  "Point files, and folders of them: PLY, PCD, LAS, KITTI .bin, XYZ/CSV, .pcap")
       ->type_name("PATH")
       ->required();
-  app.add_option("--poses", options.poses,
-                 "A pose for each scan (KITTI or TUM); without, the points are in map coordinates")
-      ->type_name("FILE");
+  CLI::Option* poses = app.add_option("--poses", options.poses,
+                                      "A pose for each scan (KITTI or TUM); without, the points are in map coordinates")
+                           ->type_name("FILE");
+  add_range_options(app, options, poses);
   add_scan_selection(app, options.selection);
   add_map_options(app, options);
   add_label_options(app, options);
@@ -118,10 +134,25 @@ BuildOptions build_options(const BuildCommandOptions& options) {
   BuildOptions build;
   build.voxel_sizes = chosen_voxel_sizes(options);
   if (!options.anchor.empty()) build.anchor = Eigen::Vector3d(options.anchor.data());
+  if (options.epsg && is_geodetic_epsg(*options.epsg)) {
+    throw std::invalid_argument(
+        fmt::format("--epsg {} is a system of degrees or from the earth's centre, a map needs metres and a z that "
+                    "points up: project "
+                    "the points first",
+                    *options.epsg));
+  }
   build.epsg = options.epsg;
   build.epoch = options.epoch;
   build.check();
   return build;
+}
+
+std::optional<RangeLimits> range_of(const BuildCommandOptions& options) {
+  if (!options.min_range && !options.max_range) return std::nullopt;
+  const RangeLimits range{options.min_range.value_or(0),
+                          options.max_range.value_or(std::numeric_limits<double>::infinity())};
+  if (range.min < range.max) return range;
+  throw std::invalid_argument(fmt::format("--min-range is {} but --max-range {}", range.min, range.max));
 }
 
 MapFromFiles build(const std::vector<MapInput>& inputs, const BuildOptions& build_options,
@@ -131,6 +162,7 @@ MapFromFiles build(const std::vector<MapInput>& inputs, const BuildOptions& buil
   options.build = build_options;
   options.label_scheme = label_scheme_of(command.label_scheme);
   options.read = command.read;
+  options.range = range_of(command);
   options.reads_ahead = common.num_threads != 1;
   options.on_scan_done = [&progress] { progress.advance(); };
   return build_map_from_files(inputs, options);
@@ -157,12 +189,6 @@ void warn(const MapFromFiles& built, const std::string& label_scheme) {
   }
 }
 
-ReadingReport reading_report(const MapFromFiles& built) {
-  ReadingReport report;
-  for (const FileFinding& found : built.findings) report.add(found.file, found.finding);
-  return report;
-}
-
 std::size_t count_files(const std::vector<MapInput>& inputs) {
   std::set<std::filesystem::path> files;
   for (const MapInput& input : inputs) files.insert(input.scan.file);
@@ -183,6 +209,7 @@ void print(const MapFromFiles& built, const std::filesystem::path& file, const s
     json["files"] = num_files;
     json["scans"] = inputs.size();
     json["dropped_points"] = built.num_dropped;
+    json["points_out_of_range"] = built.num_out_of_range;
     json["findings"] = reading.json();
     json["seconds"] = seconds;
     return print_json(json);
@@ -191,24 +218,28 @@ void print(const MapFromFiles& built, const std::filesystem::path& file, const s
       fmt::format("{}: built from {} in {:.1f} s\n", file.string(), text_of_counts(inputs.size(), num_files), seconds) +
       (built.num_dropped > 0 ? fmt::format("dropped    {} points that are not finite\n", built.num_dropped)
                              : std::string()) +
+      (built.num_out_of_range > 0 ? fmt::format("left out   {} points out of range\n", built.num_out_of_range)
+                                  : std::string()) +
       text_of_map(built.map, file));
 }
 
 ExitCode run(const BuildCommandOptions& options, const CommonOptions& common) {
   const auto start = std::chrono::steady_clock::now();
   const BuildOptions checked_options = build_options(options);
-  const std::vector<std::filesystem::path> files = list_point_files(options.inputs);
+  range_of(options);
+  ReadingReport reading;
+  const std::vector<std::filesystem::path> files = list_inputs(options.inputs, reading);
   std::vector<std::filesystem::path> read_files = files;
   if (options.poses) read_files.push_back(*options.poses);
   if (options.labels) read_files.push_back(*options.labels);
   check_output(options.output.file, read_files);
-  std::vector<MapInput> inputs = choose_inputs(list_scans(files), options.selection, options.poses);
+  std::vector<MapInput> inputs = choose_inputs(list_scans(files, options.read), options.selection, options.poses);
   if (options.labels) add_label_files(inputs, *options.labels);
   check_output(options.output.file, label_files(inputs));
 
   const MapFromFiles built = build(inputs, checked_options, options, common);
   warn(built, options.label_scheme);
-  const ReadingReport reading = reading_report(built);
+  reading.add(built.findings);
   reading.warn();
   save_map(options.output.file, built.map, options.output.save);
   const std::chrono::duration<double> elapsed = std::chrono::steady_clock::now() - start;

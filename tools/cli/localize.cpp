@@ -100,8 +100,9 @@ void check_outputs(const LocalizeCommandOptions& options, const std::vector<std:
   check_output(*options.report, inputs);
 }
 
-std::vector<ScanPlace> choose_scans(const std::vector<std::filesystem::path>& files, const ScanSelection& selection) {
-  const std::vector<ScanPlace> all = list_scans(files);
+std::vector<ScanPlace> choose_scans(const std::vector<std::filesystem::path>& files, const ScanSelection& selection,
+                                    const ReadOptions& read) {
+  const std::vector<ScanPlace> all = list_scans(files, read);
   std::vector<ScanPlace> chosen = select(all, selection);
   if (!chosen.empty()) return chosen;
   throw std::invalid_argument(fmt::format("{} chooses none of {} scans", selection.text(), all.size()));
@@ -131,10 +132,12 @@ Localized localize(const std::vector<ScanPlace>& scans, const LocalizeCommandOpt
 }
 
 ExitCode run(const LocalizeCommandOptions& options, const CommonOptions& common) {
-  const std::vector<std::filesystem::path> files = list_point_files(options.scans);
+  ReadingReport listing;
+  const std::vector<std::filesystem::path> files = list_inputs(options.scans, listing);
   check_outputs(options, files);
-  const Localized localized = localize(choose_scans(files, options.selection), options, common);
+  const Localized localized = localize(choose_scans(files, options.selection, options.read), options, common);
   const LocalizeReport& report = localized.report;
+  listing.warn();
   warn(report);
 
   const auto format = options.format == "tum" ? TrajectoryFormat::kTum : TrajectoryFormat::kKitti;

@@ -197,14 +197,16 @@ void print(const std::vector<ScanReport>& reports, std::size_t num_scans, const 
 
 ExitCode run(const OdometryCommandOptions& options, const CommonOptions& common) {
   odometry_options(options);
-  const std::vector<std::filesystem::path> all_files = list_point_files(options.scans);
+  ReadingReport listing;
+  const std::vector<std::filesystem::path> all_files = list_inputs(options.scans, listing);
   options.outputs.check(all_files);
-  const std::vector<ScanPlace> all_scans = list_scans(all_files);
+  const std::vector<ScanPlace> all_scans = list_scans(all_files, options.read);
   const std::vector<ScanPlace> scans = select(all_scans, options.selection);
   if (scans.empty()) {
     throw std::invalid_argument(fmt::format("{} chooses none of {} scans", options.selection.text(), all_scans.size()));
   }
 
+  listing.warn();
   const StopRequest stop;
   OdometryCollector collector(options.outputs);
   const std::vector<ScanReport> reports = follow(scans, options, stop, collector, common);

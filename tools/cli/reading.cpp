@@ -2,7 +2,11 @@
 #include "tools/cli/reading.h"
 
 #include <algorithm>
+#include <string>
+#include <utility>
 
+#include <CLI/Error.hpp>
+#include <CLI/Option.hpp>
 #include <spdlog/fmt/fmt.h>
 #include <spdlog/spdlog.h>
 
@@ -10,6 +14,16 @@ namespace vdbmap::cli {
 
 void add_read_options(CLI::App& app, ReadOptions& options) {
   app.add_flag("--strict", options.strict, "Refuse files that are damaged, instead of using what is left of them");
+  const auto choose_sensor = [&options](const std::string& text) {
+    options.sensor = parse_sensor_choice(text);
+    if (!options.sensor)
+      throw CLI::ValidationError("--sensor", "is '" + text + "', expected an address as 192.168.1.201:2368");
+  };
+  app.add_option_function<std::string>(
+         "--sensor", choose_sensor,
+         "Which sensor of a .pcap: address of the sender, with or without the port to which it sends (default: the "
+         "first on port 2368, else the first)")
+      ->type_name("A[:PORT]");
 }
 
 void ReadingReport::add(const std::filesystem::path& file, const ReadFinding& finding) {
@@ -24,6 +38,10 @@ void ReadingReport::add(const std::filesystem::path& file, const ReadFinding& fi
 
 void ReadingReport::add(const std::filesystem::path& file, const std::vector<ReadFinding>& findings) {
   for (const ReadFinding& finding : findings) add(file, finding);
+}
+
+void ReadingReport::add(const std::vector<FileFinding>& findings) {
+  for (const FileFinding& found : findings) add(found.file, found.finding);
 }
 
 void ReadingReport::warn() const {
@@ -46,6 +64,13 @@ nlohmann::ordered_json ReadingReport::json() const {
                     {"is_damage", row.finding.is_damage}});
   }
   return json;
+}
+
+std::vector<std::filesystem::path> list_inputs(const std::vector<std::filesystem::path>& inputs,
+                                               ReadingReport& report) {
+  PointFiles found = find_point_files(inputs);
+  report.add(found.findings);
+  return std::move(found.files);
 }
 
 }  // namespace vdbmap::cli

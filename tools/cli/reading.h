@@ -11,7 +11,7 @@
 
 namespace vdbmap::cli {
 
-/// Declares the options of every command that reads points.
+/// Declares the options of every command that reads points: --strict and --sensor.
 void add_read_options(CLI::App& app, ReadOptions& options);
 
 /// What was noticed in the files of a command: one line for all that say the same.
@@ -19,6 +19,8 @@ class ReadingReport {
  public:
   void add(const std::filesystem::path& file, const ReadFinding& finding);
   void add(const std::filesystem::path& file, const std::vector<ReadFinding>& findings);
+
+  void add(const std::vector<FileFinding>& findings);
 
   /// Logs a warning a finding: "a.las: 3 withheld points left out", "a.las and 2 more files: 9 withheld points left
   /// out".
@@ -37,5 +39,8 @@ class ReadingReport {
 
   std::vector<Row> rows_;
 };
+
+/// The point files of a command's inputs; what was left out of their folders goes to `report`.
+std::vector<std::filesystem::path> list_inputs(const std::vector<std::filesystem::path>& inputs, ReadingReport& report);
 
 }  // namespace vdbmap::cli
