@@ -101,11 +101,9 @@ std::string reason_from_names(const std::vector<std::string>& columns) {
   return {};
 }
 
-std::string reason_from_rows(const std::vector<std::vector<double>>& rows) {
-  if (rows.empty()) return {};
-  if (std::ranges::all_of(rows, is_matrix) || std::ranges::all_of(rows, is_time_and_quaternion)) return "holds poses";
-  const auto is_narrow = [](const std::vector<double>& row) { return row.size() < 3; };
-  return std::ranges::all_of(rows, is_narrow) ? "has less than three columns" : "";
+std::size_t count_numbers(const std::vector<std::string>& columns) {
+  return static_cast<std::size_t>(
+      std::ranges::count_if(columns, [](const std::string& column) { return parse_number(column).has_value(); }));
 }
 
 // The lines that are whole and not blank.
@@ -120,19 +118,24 @@ std::vector<std::string_view> filled_lines(std::string_view front) {
 }
 
 std::string reason_from_content(std::string_view front) {
-  std::vector<std::vector<double>> rows;
+  std::vector<std::vector<double>> rows;  // of numbers alone
+  std::size_t most_numbers = 0;
   for (std::string_view line : filled_lines(front)) {
-    if (const auto numbers = numbers_of(line)) {
-      rows.push_back(*numbers);
-      if (rows.size() == kNumRowsLookedAt) break;
-      continue;
-    }
     line.remove_prefix(std::min(line.find_first_not_of("#/% \t\xef\xbb\xbf"), line.size()));
     const std::vector<std::string> columns = columns_of(line);
     if (columns.empty()) continue;
-    if (std::string reason = reason_from_names(columns); !reason.empty()) return reason;
+    most_numbers = std::max(most_numbers, count_numbers(columns));
+    if (const auto numbers = numbers_of(line)) {
+      rows.push_back(*numbers);
+    } else if (std::string reason = reason_from_names(columns); !reason.empty()) {
+      return reason;
+    }
+    if (rows.size() == kNumRowsLookedAt) break;
   }
-  return reason_from_rows(rows);
+  if (!rows.empty() && (std::ranges::all_of(rows, is_matrix) || std::ranges::all_of(rows, is_time_and_quaternion))) {
+    return "holds poses";
+  }
+  return !front.empty() && most_numbers < 3 ? "holds no rows of three numbers" : "";
 }
 
 }  // namespace
@@ -141,7 +144,7 @@ std::string reason_no_scan(const std::filesystem::path& table) {
   if (std::string reason = reason_from_name(table); !reason.empty()) return reason;
   try {
     const std::string front = read_front(table, kFrontSize);
-    return reason_from_content(front.size() < kFrontSize ? front + "\n" : front);
+    return reason_from_content(front.empty() || front.size() == kFrontSize ? front : front + "\n");
   } catch (const IoError&) {
     return {};  // reading it will say why
   }

@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "vdbmap/io/vlp16_turn_reader.h"
 
+#include <algorithm>
+#include <cstdlib>
 #include <string>
 #include <utility>
 
@@ -8,6 +10,8 @@
 
 namespace vdbmap {
 namespace {
+
+constexpr std::int64_t kHour = 3'600'000'000;  // [us]
 
 // [0.01 deg] An azimuth that falls by less is a packet that came late, not a new turn.
 constexpr int kLeastFallOfNewTurn = 2000;
@@ -38,10 +42,22 @@ std::optional<std::string> datagram_defect(const UdpDatagram& datagram) {
   return velodyne_packet_defect(datagram.payload.first<kVelodynePacketSize>());
 }
 
+// Of two time stamps after the hour, whichever hour [us].
+std::int64_t time_between(std::int64_t a, std::int64_t b) {
+  const std::int64_t difference = std::abs(a - b);
+  return std::min(difference, std::abs(kHour - difference));
+}
+
+// Whether the packets before and after one belong together, and it does not to them.
+bool stands_alone(std::uint32_t before_us, std::uint32_t time_us, std::uint32_t after_us) {
+  constexpr std::int64_t kSecond = 1'000'000;  // [us] hundreds of packets
+  return time_between(before_us, after_us) < kSecond && time_between(before_us, time_us) > kSecond &&
+         time_between(time_us, after_us) > kSecond;
+}
+
 }  // namespace
 
 double Vlp16TurnReader::HourClock::seconds(std::uint32_t microseconds_after_hour) {
-  constexpr std::int64_t kHour = 3'600'000'000;
   const std::int64_t now = microseconds_after_hour;
   if (now + kHour / 2 < latest_) start_of_hour_ += kHour;
   latest_ = now;
@@ -84,13 +100,37 @@ bool Vlp16TurnReader::read_packet() {
     return true;
   }
   const VelodynePayload payload = datagram->payload.first<kVelodynePacketSize>();
-  if (velodyne_product(payload) == sensor_.product) decode(payload);
+  if (velodyne_product(payload) == sensor_.product) hold(payload);
   return true;
+}
+
+void Vlp16TurnReader::hold(VelodynePayload payload) {
+  decode_held(velodyne_timestamp_us(payload));
+  held_.emplace().number = capture_.packet_number();
+  std::ranges::copy(payload, held_->payload.begin());
+}
+
+// One wrong time would shift all that follow, as if an hour had passed.
+void Vlp16TurnReader::decode_held(std::optional<std::uint32_t> next_time_us) {
+  if (!held_) return;
+  const VelodynePayload payload(held_->payload);
+  const std::uint32_t time_us = velodyne_timestamp_us(payload);
+  if (latest_time_us_ && next_time_us && stands_alone(*latest_time_us_, time_us, *next_time_us)) {
+    note_damage({"damaged data packets left out", 1,
+                 "packet " + std::to_string(held_->number) + ": time stamp " + std::to_string(time_us) +
+                     " us, expected about " + std::to_string(*next_time_us),
+                 true});
+  } else {
+    decode(payload);
+    latest_time_us_ = time_us;
+  }
+  held_.reset();
 }
 
 void Vlp16TurnReader::note_end() {
   if (has_ended_) return;
   has_ended_ = true;
+  decode_held(std::nullopt);
   if (!capture_.damage().empty()) {
     note_damage({"the capture is cut off or damaged, its rest is left out", 0, capture_.damage(), true});
   }

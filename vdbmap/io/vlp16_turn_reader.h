@@ -45,7 +45,15 @@ class Vlp16TurnReader {
     std::int64_t start_of_hour_ = 0;  // [us]
   };
 
+  // The packet read last, whose time stamp the next one tells to be right.
+  struct HeldPacket {
+    std::array<std::uint8_t, kVelodynePacketSize> payload{};
+    std::uint64_t number = 0;
+  };
+
   bool read_packet();
+  void hold(VelodynePayload payload);
+  void decode_held(std::optional<std::uint32_t> next_time_us);
   void note_end();
   void note_damage(const ReadFinding& finding);
   [[noreturn]] void fail_without_points() const;
@@ -57,7 +65,9 @@ class Vlp16TurnReader {
   VelodyneSensor sensor_;
   UdpCapture capture_;
   HourClock clock_;
-  int latest_azimuth_ = 0;  // [0.01 deg]
+  std::optional<HeldPacket> held_;
+  std::optional<std::uint32_t> latest_time_us_;  // after the hour, of the packet decoded last
+  int latest_azimuth_ = 0;                       // [0.01 deg]
   std::uint64_t latest_turn_ = 0;
   std::uint64_t current_turn_ = 0;       // that of the last point
   std::vector<VelodyneReturn> returns_;  // of one packet

@@ -60,10 +60,13 @@ TEST_F(FolderOfScans, PointsAsTextMayStandBesideOtherScans) {
 
 TEST_F(FolderOfScans, TextIsReadWhereThereIsNothingElse) {
   for (const char* name : {"2.txt", "10.txt"}) write(name);
+  write("3.txt", "");  // a scan that is lost, in its place all the same
   write("poses.txt");
-  EXPECT_EQ(names(), (std::vector<std::string>{"2.txt", "10.txt"}));
-  EXPECT_EQ(findings(), std::vector<std::string>{
-                            "1 text files that are no scans left out (poses.txt is named like a table of poses)"});
+  write("license.txt", "Copyright 2024\nAll rights reserved: 1 2\n");
+  EXPECT_EQ(names(), (std::vector<std::string>{"2.txt", "3.txt", "10.txt"}));
+  EXPECT_EQ(findings(),
+            std::vector<std::string>{
+                "2 text files that are no scans left out (first: license.txt holds no rows of three numbers)"});
 }
 
 TEST_F(FolderOfScans, NamesSayWhatATableHolds) {

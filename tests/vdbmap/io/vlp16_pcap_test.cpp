@@ -371,6 +371,23 @@ TEST_F(Vlp16Pcap, ADamagedPacketIsLeftOutAndNamed) {
   }
 }
 
+TEST_F(Vlp16Pcap, AWrongTimeOfOnePacketShiftsNoOther) {
+  std::vector<std::string> payloads = test::vlp16_payloads(room_, {.num_packets = 5, .start_us = 3'599'999'000});
+  const std::vector<std::string> whole = payloads;
+  payloads.erase(payloads.begin() + 2);
+  const PointCloud expected = read_vlp16_pcap(write(test::ethernet_capture(payloads))).cloud;
+  EXPECT_GT(expected.times.back(), 3600.0);  // over the hour
+
+  for (const std::uint32_t time_us : {1'800'000'000U, 5'000'000U, 0xffffffffU}) {
+    payloads = whole;
+    std::memcpy(payloads[2].data() + 1200, &time_us, 4);
+    const ReadResult result = read_vlp16_pcap(write(test::ethernet_capture(payloads)));
+    EXPECT_EQ(result.cloud.times, expected.times) << time_us;
+    ASSERT_EQ(result.findings.size(), 1U);
+    EXPECT_EQ(result.findings[0].first, "packet 3: time stamp " + std::to_string(time_us) + " us, expected about 2981");
+  }
+}
+
 TEST_F(Vlp16Pcap, WithoutAWholePacketTheFirstDefectIsTheError) {
   for (const PacketDamage& damage : kPacketDamages) {
     std::string payload = test::vlp16_payloads(room_, {.start_azimuth_deg = 90})[0];
