@@ -71,6 +71,14 @@ TEST_F(Capture, OneThatIsCutOffOrCannotBeReadDoesNotStopTheOthers) {
       << run.err;
 }
 
+TEST_F(Capture, StrictReadingRefusesOneThatIsCutOff) {
+  const std::string room = capture();
+  std::filesystem::resize_file(room, std::filesystem::file_size(room) - 1);
+  const std::string part = "room.pcap: the capture is cut off or damaged, its rest is left out (packet 200: ";
+  expect_error(vdbmap({"odometry", room, "--strict", "-o", path("o.txt")}), ExitCode::kBadInput, part);
+  expect_error(vdbmap({"build", room, "--strict", "-o", path("map.vdb")}), ExitCode::kBadInput, part);
+}
+
 TEST_F(Capture, ASensorIsChosenByItsAddress) {
   const std::string room = capture();
   EXPECT_EQ(json_of({"build", room, "--sensor", "192.168.1.201:2368", "-o", path("map.vdb")})["scans"], 4);

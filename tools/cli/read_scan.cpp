@@ -14,7 +14,7 @@ std::optional<PointCloud> read_scan(ScanReader& reader, const ScanPlace& scan, R
     report.add(scan.file, read.findings);
     return std::move(read.cloud);
   } catch (const IoError& error) {
-    if (error.kind() != IoError::Kind::kMalformed) throw;
+    if (error.kind() != IoError::Kind::kMalformed || reader.options().strict) throw;
     reason = error.what();
     return std::nullopt;
   }

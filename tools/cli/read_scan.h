@@ -11,7 +11,8 @@
 namespace vdbmap::cli {
 
 /// A scan of a sequence, what was found in its file going to `report`; nothing, and the reason, where its content is
-/// damaged: the others can still be used. Throws IoError where the file cannot be read at all.
+/// damaged: the others can still be used. Throws IoError where the file cannot be read at all, and for damage too where
+/// the reader is strict.
 std::optional<PointCloud> read_scan(ScanReader& reader, const ScanPlace& scan, ReadingReport& report,
                                     std::string& reason);
 

@@ -66,6 +66,9 @@ bool is_of_14(const LasHeader& header) { return header.minor_version >= 4 || hea
 void check_size(ByteReader& file, LasHeader& header) {
   const std::uint64_t least = is_of_14(header) ? kHeaderSize14 : kLasHeaderSize;
   const std::uint64_t least_offset = header.size < least ? kLasHeaderSize : least;
+  if (file.size() < least_offset) {
+    fail_at(file, file.size(), "the file ends within its header of " + std::to_string(least_offset) + " bytes");
+  }
   if (header.points_offset < least_offset || header.points_offset > file.size()) {
     fail_at(file, kPointsOffsetAt,
             "points begin at byte " + std::to_string(header.points_offset) + ", expected " +

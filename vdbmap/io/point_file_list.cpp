@@ -58,11 +58,28 @@ Candidates sort_out(const std::vector<Path>& files) {
   return candidates;
 }
 
-// Why a table beside other scans is none, or one beside none.
-std::string reason_left_out(const Path& table, bool is_beside_scans) {
+// A name without its extension, its numbers left open: "scan_#" for scan_17.bin.
+std::string pattern_of(const Path& path) {
+  std::string pattern;
+  for (const char c : path.stem().string()) {
+    const bool is_digit = c >= '0' && c <= '9';
+    if (!is_digit || !pattern.ends_with('#')) pattern += is_digit ? '#' : c;
+  }
+  return pattern;
+}
+
+// Whether a table may be one more of these scans: named like them, and not like one of them.
+bool continues(const Path& table, const std::vector<Path>& scans) {
+  const auto has_its_name = [&](const Path& scan) { return scan.stem() == table.stem(); };
+  const auto has_its_pattern = [&](const Path& scan) { return pattern_of(scan) == pattern_of(table); };
+  return std::ranges::none_of(scans, has_its_name) && std::ranges::any_of(scans, has_its_pattern);
+}
+
+// Why a table is no scan beside those of other formats, where there are any; .csv may be tables of anything.
+std::string reason_left_out(const Path& table, const std::vector<Path>& scans) {
   std::string reason = reason_no_scan(table);
-  if (!reason.empty() || !is_beside_scans || extension_of(table) != ".csv") return reason;
-  return "is a table beside scans of other formats";
+  if (!reason.empty() || scans.empty() || extension_of(table) != ".csv" || continues(table, scans)) return reason;
+  return "is a table beside scans of other formats and names";
 }
 
 struct Folder {
@@ -70,9 +87,9 @@ struct Folder {
   std::vector<ReadFinding> left_out;
 };
 
-void add_tables(const std::vector<Path>& tables, bool is_beside_scans, Folder& folder) {
+void add_tables(const std::vector<Path>& tables, const std::vector<Path>& scans, Folder& folder) {
   for (const Path& table : tables) {
-    const std::string reason = reason_left_out(table, is_beside_scans);
+    const std::string reason = reason_left_out(table, scans);
     if (reason.empty()) {
       folder.files.push_back(table);
     } else {
@@ -85,8 +102,8 @@ void add_tables(const std::vector<Path>& tables, bool is_beside_scans, Folder& f
 Folder list_folder(const Path& path) {
   const Candidates candidates = sort_out(files_in(path));
   Folder folder{candidates.scans, {}};
-  add_tables(candidates.tables, !candidates.scans.empty(), folder);
-  if (folder.files.empty()) add_tables(candidates.texts, false, folder);
+  add_tables(candidates.tables, candidates.scans, folder);
+  if (folder.files.empty()) add_tables(candidates.texts, {}, folder);
   std::ranges::sort(folder.files, comes_before);
   if (!folder.files.empty()) return folder;
 

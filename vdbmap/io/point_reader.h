@@ -46,8 +46,8 @@ struct PointFiles {
 };
 
 /// The point files that `inputs` name, in order: a file stands for itself, a folder for the point files directly in it,
-/// in the order of comes_before(). Text in a folder may be anything: tables beside scans of binary formats, and those
-/// that hold poses, positions of the vehicle, times and the like, are no scans; .txt files are scans only where the
+/// in the order of comes_before(). Text in a folder may be anything: what holds poses, positions of the vehicle, times
+/// and the like is no scan, nor is .csv beside scans of other formats and names; .txt files are scans only where the
 /// folder holds no others. Throws IoError for a missing input or a folder without any.
 PointFiles find_point_files(const std::vector<std::filesystem::path>& inputs);
 

@@ -40,6 +40,8 @@ class ScanReader {
   ScanReader(ScanReader&&) noexcept;
   ScanReader& operator=(ScanReader&&) noexcept;
 
+  const ReadOptions& options() const { return options_; }
+
   /// Throws IoError as read_points() does, and for a turn that the capture does not have. What is found in a capture
   /// comes with the first turn that is read after its place.
   ReadResult read(const ScanPlace& scan);

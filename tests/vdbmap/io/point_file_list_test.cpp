@@ -53,6 +53,15 @@ TEST_F(FolderOfScans, TablesBesideScansAreNone) {
                 "2 text files that are no scans left out (first: poses.csv is named like a table of poses)"});
 }
 
+TEST_F(FolderOfScans, TablesThatAreNamedLikeTheScansGoOnWithThem) {
+  for (const char* name : {"scan_1.bin", "scan_2.csv", "scan_10.bin", "scan_10.csv", "drive_3.csv"}) write(name);
+  EXPECT_EQ(names(), (std::vector<std::string>{"scan_1.bin", "scan_2.csv", "scan_10.bin"}));
+  EXPECT_EQ(findings(),
+            std::vector<std::string>{
+                "2 text files that are no scans left out (first: drive_3.csv is a table beside scans of other "
+                "formats and names)"});
+}
+
 TEST_F(FolderOfScans, PointsAsTextMayStandBesideOtherScans) {
   for (const char* name : {"a.ply", "b.xyz", "c.asc"}) write(name);
   EXPECT_EQ(names(), (std::vector<std::string>{"a.ply", "b.xyz", "c.asc"}));

@@ -28,7 +28,7 @@ struct Format {
   bool keeps_times = true;
   bool keeps_rings = true;
   bool keeps_labels = true;
-  bool may_be_shorter = false;  ///< the format does not state how many points there are
+  bool may_be_shorter = false;  ///< the format states no number of points, or what is left of them is read
   bool is_text = false;         ///< the last number may lose digits unnoticed
 };
 
@@ -50,6 +50,7 @@ std::vector<Format> all_formats() {
   Format las{"Las", ".las", [](auto& path, auto& cloud) { write_las(path, cloud); }};
   las.tolerance = las.far_tolerance = 0.00005001;  // half its resolution, and the rounding of doubles
   las.keeps_rings = false;
+  las.may_be_shorter = true;
 
   Format kitti{"KittiBin", ".bin", [](auto& path, auto& cloud) { write_kitti_bin(path, cloud); }};
   kitti.far_tolerance = 0.25;  // half a float's step at 5800 km
