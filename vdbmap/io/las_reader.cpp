@@ -86,35 +86,31 @@ void refuse_compression(const std::filesystem::path& path, const std::vector<Las
   }
 }
 
-// Of the points in the file, in their order.
-std::vector<bool> read_withheld(const char* first_record, const LasHeader& header) {
-  if (!header.has_flags) return std::vector<bool>(header.num_points);
-  std::vector<bool> is_withheld;
-  for (std::uint64_t i = 0; i < header.num_points; ++i) {
-    const auto flags = load<std::uint8_t>(first_record + i * header.record_length + header.format.withheld_at);
-    is_withheld.push_back((flags & header.format.withheld_mask) != 0);
+// Places in the file.
+std::vector<std::size_t> places_of_withheld(const char* first_record, const LasHeader& header) {
+  std::vector<std::size_t> places;
+  if (!header.has_flags) return places;
+  const char* flags = first_record + header.format.withheld_at;
+  for (std::uint64_t i = 0; i < header.num_points; ++i, flags += header.record_length) {
+    if ((load<std::uint8_t>(flags) & header.format.withheld_mask) != 0) places.push_back(i);
   }
-  return is_withheld;
+  return places;
 }
 
-// LAS 1.4-R15, table 9: such a point "should not be included in processing".
-void drop_withheld(const std::filesystem::path& path, const std::vector<bool>& is_withheld, ReadResult& read) {
+// LAS 1.4-R15, table 9: such a point "should not be included in processing". Both lists of places rise.
+void drop_withheld(const std::filesystem::path& path, const std::vector<std::size_t>& withheld, ReadResult& read) {
   std::vector<std::size_t> places;  // among those left
+  std::size_t first = 0;            // in the file
   auto dropped = read.dropped.begin();
-  std::size_t first = 0;  // point in the file, from 1
-  for (std::size_t i = 0, place = 0; i < is_withheld.size(); ++i) {
-    if (dropped != read.dropped.end() && *dropped == i) {
-      ++dropped;
-      continue;
-    }
-    if (is_withheld[i]) {
-      if (places.empty()) first = i + 1;
-      places.push_back(place);
-    }
-    ++place;
+  for (const std::size_t place : withheld) {
+    dropped = std::lower_bound(dropped, read.dropped.end(), place);
+    const bool is_left = dropped == read.dropped.end() || *dropped != place;
+    if (is_left && places.empty()) first = place;
+    if (is_left) places.push_back(place - static_cast<std::size_t>(dropped - read.dropped.begin()));
   }
+  if (places.empty()) return;
   if (places.size() == read.cloud.size()) throw IoError::malformed(path, "all of its points are withheld");
-  drop_points(read, places, {"withheld points left out", places.size(), "point " + std::to_string(first)});
+  drop_points(read, places, {"withheld points left out", places.size(), "point " + std::to_string(first + 1)});
 }
 
 }  // namespace
@@ -134,7 +130,7 @@ ReadResult read_las(const std::filesystem::path& path) {
   for (const auto& findings : {header.findings, records.findings, system.findings, count.findings}) {
     result.findings.insert(result.findings.end(), findings.begin(), findings.end());
   }
-  drop_withheld(path, read_withheld(first_record, header), result);
+  drop_withheld(path, places_of_withheld(first_record, header), result);
   result.epsg = system.epsg;
   if (!result.cloud.labels.empty()) result.label_scheme = LabelScheme::kAsprs;
   result.metres_per_unit = system.metres_per_unit.value_or(1.0);

@@ -279,16 +279,13 @@ TEST_F(Las, PointsThatAreAllWithheldAreAnError) {
 TEST_F(Las, WithheldAndNonFinitePointsKeepTheirPlacesInTheFile) {
   LasBytes las = two_points(3);
   las.scale.x() = 1e304;
-  las.points = {{.x = 1 << 30},
-                {.x = 0, .classification = 0x80},
-                {.x = 0, .intensity = 7},
-                {.x = 1 << 30, .classification = 0x80},
-                {.x = 0, .classification = 0x80},
-                {.x = 0, .intensity = 8}};
+  las.points = {{.x = 1 << 30, .classification = 0x80}, {.x = 0, .classification = 0x80}, {.x = 0, .intensity = 7},
+                {.x = 1 << 30, .classification = 0x80}, {.x = 0, .classification = 0x80}, {.x = 0, .intensity = 8}};
   const ReadResult result = read(las.bytes());
   EXPECT_EQ(result.dropped, (std::vector<std::size_t>{0, 1, 3, 4}));
   EXPECT_EQ(result.cloud.intensities, (std::vector<float>{7, 8}));
   EXPECT_EQ(result.num_non_finite, 2U);
+  EXPECT_EQ(result.findings, (std::vector<ReadFinding>{{"withheld points left out", 2, "point 2"}}));
 }
 
 TEST_F(Las, Version10HasNoWithheldPoints) {
