@@ -4,9 +4,8 @@
 #include <algorithm>
 #include <cmath>
 
-#include <ceres/tiny_solver.h>
-
 #include "registration/fine/plane_residual.h"
+#include "registration/fine/solver_step.h"
 
 namespace vdbmap::registration {
 namespace {
@@ -46,17 +45,6 @@ std::vector<double> robust_slopes(std::span<const PlaneMatch> matches, const Eig
   return slopes;
 }
 
-// The weights stand for the kernel, so two steps of the solver are as good as many.
-Vector6d solve(std::span<const PlaneMatch> matches, std::span<const double> weights,
-               const Eigen::Isometry3d& local_from_scan) {
-  const PlaneResiduals residuals(matches, weights, local_from_scan);
-  ceres::TinySolver<PlaneResiduals> solver;
-  solver.options.max_num_iterations = 2;
-  Vector6d motion = Vector6d::Zero();
-  solver.Solve(residuals, &motion);
-  return motion;
-}
-
 bool is_at_rest(const Vector6d& motion) {
   return motion.head<3>().norm() < kRestingRotation && motion.tail<3>().norm() < kRestingTranslation;
 }
@@ -73,9 +61,10 @@ RoundsResult run_rounds(const MatchingStage& stage, const Eigen::Isometry3d& loc
     if (result.matches.size() < kMinMatches) break;
     const bool is_last_kernel = kernel <= stage.kernel.last;
     result.weights = robust_weights(result.matches, result.local_from_scan, kernel);
-    const Vector6d motion = solve(result.matches, result.weights, result.local_from_scan);
-    result.local_from_scan = moved_by(result.local_from_scan, motion);
-    result.converged = is_last_kernel && is_at_rest(motion);
+    // One step: the weights stand for the kernel at this pose only.
+    const SolverStep step = step_towards_planes(result.matches, result.weights, result.local_from_scan);
+    result.local_from_scan = moved_by(result.local_from_scan, step.motion);
+    result.converged = is_last_kernel && is_at_rest(step.proposed);
     kernel = std::max(stage.kernel.last, kernel * stage.kernel.factor);
   }
   result.weights = robust_weights(result.matches, result.local_from_scan, stage.kernel.last);

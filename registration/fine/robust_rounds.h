@@ -33,11 +33,11 @@ struct RoundsResult {
   std::vector<double> weights;
   std::vector<double>
       slopes;              ///< derivatives of weight times distance by the distance: below the weights, even negative
-  bool converged = false;  ///< the last round moved the scan by less than 1 mm and 0.01 degrees
+  bool converged = false;  ///< the last round's step, undamped, was less than 1 mm and 0.01 degrees
 };
 
-/// Matches the points with planes, lets Ceres move the scan to them, and again, until it rests. Stops where fewer than
-/// six points have a plane.
+/// Matches the points with planes, lets Ceres take one step to move the scan to them, and again, until the step is
+/// small by itself: one that had to be damped to that is no rest. Stops where fewer than six points have a plane.
 RoundsResult run_rounds(const MatchingStage& stage, const Eigen::Isometry3d& local_from_scan_guess);
 
 }  // namespace vdbmap::registration
