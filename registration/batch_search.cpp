@@ -14,48 +14,44 @@
 namespace vdbmap::registration {
 namespace {
 
-// Of the hypotheses, the most that are aligned: the true one has been the first or second on every street tried.
-constexpr std::size_t kMaxAligned = 6;
-constexpr std::size_t kMaxAlignedFinely = 2;  // the best and its rival
+// Places that are compared: the true one has been that of the first or second hypothesis on every street tried.
+constexpr std::size_t kMaxPlaces = 6;
 
-void sort_by_agreement(std::vector<BatchCandidate>& candidates) {
+// Alignment on all levels makes agreement greater by at most this factor: by 1.04 on KITTI streets.
+constexpr double kMaxGain = 1.3;
+
+using Candidates = std::vector<BatchCandidate>;
+
+// What hypotheses are aligned and compared with.
+struct Search {
+  const CombinedScans& combined;
+  const VoxelMap& map;
+  const VerdictOptions& verdict;
+  FineOptions fine;
+  Eigen::Vector3d center;  // [m] of the batch
+};
+
+void sort_by_agreement(Candidates& candidates) {
   std::stable_sort(candidates.begin(), candidates.end(),
                    [](const BatchCandidate& a, const BatchCandidate& b) { return a.agreement > b.agreement; });
 }
 
-BatchCandidate align_coarsely(const CombinedScans& combined, const VoxelMap& map, const PoseHypothesis& hypothesis) {
+BatchCandidate align_on_coarser_levels(const PoseHypothesis& hypothesis, const Search& search) {
   BatchCandidate candidate;
   candidate.coarse_guess = hypothesis.target_from_source;
-  candidate.coarse_guess.translation() += map.frame.anchor;
-  candidate.map_from_batch = align_coarsely(combined.sample, map, candidate.coarse_guess);
+  candidate.coarse_guess.translation() += search.map.frame.anchor;
+  candidate.map_from_batch = align_coarsely(search.combined.sample, search.map, candidate.coarse_guess, search.fine);
   candidate.num_feature_inliers = hypothesis.num_inliers;
-  candidate.agreement = surface_agreement(combined.pieces, map, candidate.map_from_batch);
+  candidate.agreement = surface_agreement(search.combined.pieces, search.map, candidate.map_from_batch);
   return candidate;
 }
 
-std::vector<BatchCandidate> align_all_coarsely(const CombinedScans& combined, const VoxelMap& map,
-                                               std::span<const PoseHypothesis> hypotheses) {
-  std::vector<BatchCandidate> candidates(std::min(hypotheses.size(), kMaxAligned));
-  parallel_for(candidates.size(), [&](std::size_t i) { candidates[i] = align_coarsely(combined, map, hypotheses[i]); });
-  sort_by_agreement(candidates);
-  return candidates;
-}
-
-void align_finely(BatchCandidate& candidate, const CombinedScans& combined, const VoxelMap& map) {
-  FineOptions options;
-  options.search_headings = false;
-  const FineResult fine = align_sample(combined.sample, map, candidate.map_from_batch, options);
+void align_on_all_levels(BatchCandidate& candidate, const Search& search) {
+  const FineResult fine = align_sample(search.combined.sample, search.map, candidate.map_from_batch, search.fine);
   candidate.map_from_batch = fine.map_from_scan;
   candidate.covariance = fine.covariance;
-  candidate.agreement = surface_agreement(combined.pieces, map, fine.map_from_scan);
-  candidate.evidence = weigh(combined.sample.fine, combined.rays, map, fine.map_from_scan);
-}
-
-// The best few on all levels; the others are worse by more than that can change.
-void align_best_finely(std::vector<BatchCandidate>& candidates, const CombinedScans& combined, const VoxelMap& map) {
-  candidates.resize(std::min(candidates.size(), kMaxAlignedFinely));
-  parallel_for(candidates.size(), [&](std::size_t i) { align_finely(candidates[i], combined, map); });
-  sort_by_agreement(candidates);
+  candidate.agreement = surface_agreement(search.combined.pieces, search.map, fine.map_from_scan);
+  candidate.evidence = weigh(search.combined.sample.fine, search.combined.rays, search.map, fine.map_from_scan);
 }
 
 Eigen::Vector3d center_of(std::span<const Eigen::Vector3d> points) {
@@ -64,9 +60,11 @@ Eigen::Vector3d center_of(std::span<const Eigen::Vector3d> points) {
   return points.empty() ? sum : Eigen::Vector3d(sum / static_cast<double>(points.size()));
 }
 
-// Of candidates that came to the same place only the best stays, with the best supported of the guesses that led there.
-std::vector<BatchCandidate> without_repetitions(std::vector<BatchCandidate> candidates, const Eigen::Vector3d& center) {
-  std::vector<BatchCandidate> distinct;
+// The better first. Of candidates that came to the same place only the best stays, with the best supported of the
+// guesses that led there.
+Candidates distinct_places(Candidates candidates, const Eigen::Vector3d& center) {
+  sort_by_agreement(candidates);
+  Candidates distinct;
   for (BatchCandidate& candidate : candidates) {
     const auto known = std::find_if(distinct.begin(), distinct.end(), [&](const BatchCandidate& other) {
       return are_alike(other.map_from_batch, candidate.map_from_batch, center);
@@ -81,6 +79,28 @@ std::vector<BatchCandidate> without_repetitions(std::vector<BatchCandidate> cand
   return distinct;
 }
 
+// Whether a hypothesis is aligned though some before it came to one place: until there is a rival, then where about as
+// many features speak for it as for the first, as they do where places look alike.
+bool is_worth_a_try(const PoseHypothesis& hypothesis, const PoseHypothesis& first, std::size_t num_places) {
+  constexpr std::size_t kBestAndRival = 2;
+  return num_places < kBestAndRival || 2 * hypothesis.num_inliers >= first.num_inliers;
+}
+
+// Where the hypotheses lead on the coarser levels. Those that meet leave room for the next.
+Candidates places_of(std::span<const PoseHypothesis> hypotheses, const Search& search) {
+  Candidates places;
+  for (std::size_t begin = 0; begin < hypotheses.size() && places.size() < kMaxPlaces;) {
+    const std::size_t count = std::min(hypotheses.size() - begin, kMaxPlaces - places.size());
+    if (begin > 0 && !is_worth_a_try(hypotheses[begin], hypotheses[0], places.size())) break;
+    Candidates aligned(count);
+    parallel_for(count, [&](std::size_t i) { aligned[i] = align_on_coarser_levels(hypotheses[begin + i], search); });
+    places.insert(places.end(), aligned.begin(), aligned.end());
+    places = distinct_places(std::move(places), search.center);
+    begin += count;
+  }
+  return places;
+}
+
 // Standard deviation of the place in its least certain direction [m].
 double greatest_deviation(const Matrix6d& covariance) {
   const Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d> solver(covariance.bottomRightCorner<3, 3>().eval(),
@@ -88,10 +108,8 @@ double greatest_deviation(const Matrix6d& covariance) {
   return std::sqrt(std::max(solver.eigenvalues()[2], 0.0));
 }
 
-// Why the best candidate is not believed; empty when it is.
-std::string reason_not_found(std::span<const BatchCandidate> candidates, const VerdictOptions& verdict) {
-  if (candidates.empty()) return "no features agree with the map";
-  const BatchCandidate& best = candidates.front();
+// Why a candidate is not believed, whatever the others; empty when it is.
+std::string reason_against(const BatchCandidate& best, const VerdictOptions& verdict) {
   if (best.evidence.overlap < verdict.min_overlap) {
     return "only " + percent(best.evidence.overlap) + " of the points have the map near by";
   }
@@ -102,10 +120,46 @@ std::string reason_not_found(std::span<const BatchCandidate> candidates, const V
     return percent(best.evidence.blocked_share) + " of the rays would pass through solid map";
   }
   if (greatest_deviation(best.covariance) > verdict.max_deviation) return "the map does not determine its place";
-  if (candidates.size() < 2) return "";
+  return "";
+}
+
+// Why the best candidate is not believed beside the others; empty when it is.
+std::string reason_not_found(std::span<const BatchCandidate> candidates, const VerdictOptions& verdict) {
+  if (candidates.empty()) return "no features agree with the map";
+  const BatchCandidate& best = candidates.front();
+  std::string reason = reason_against(best, verdict);
+  if (!reason.empty() || candidates.size() < 2) return reason;
   const double next = candidates[1].agreement;
   if (best.agreement >= verdict.min_margin * next) return "";
   return "another pose agrees nearly as well: " + percent(next) + " of its surfaces beside " + percent(best.agreement);
+}
+
+// How many of the waiting places are aligned on all levels next: until there is a rival to the best, then those that
+// may yet come as near to it as to put it in doubt, where nothing else does.
+std::size_t count_next(std::span<const BatchCandidate> aligned, std::span<const BatchCandidate> waiting,
+                       const VerdictOptions& verdict) {
+  constexpr std::size_t kBestAndRival = 2;
+  if (aligned.size() < kBestAndRival) return std::min(waiting.size(), kBestAndRival - aligned.size());
+  if (!reason_not_found(aligned, verdict).empty()) return 0;
+  const double least = aligned.front().agreement / (verdict.min_margin * kMaxGain);
+  const auto end = std::find_if(waiting.begin(), waiting.end(),
+                                [&](const BatchCandidate& candidate) { return candidate.agreement < least; });
+  return static_cast<std::size_t>(end - waiting.begin());
+}
+
+// Of places in the order of their agreement those that matter, aligned on all levels.
+Candidates align_contenders(Candidates places, const Search& search) {
+  Candidates contenders;
+  std::size_t num_aligned = 0;
+  while (true) {
+    const std::span<BatchCandidate> waiting = std::span(places).subspan(num_aligned);
+    const std::size_t count = count_next(contenders, waiting, search.verdict);
+    if (count == 0) return contenders;
+    parallel_for(count, [&](std::size_t i) { align_on_all_levels(waiting[i], search); });
+    contenders.insert(contenders.end(), waiting.begin(), waiting.begin() + static_cast<std::ptrdiff_t>(count));
+    contenders = distinct_places(std::move(contenders), search.center);
+    num_aligned += count;
+  }
 }
 
 }  // namespace
@@ -125,19 +179,27 @@ void VerdictOptions::check() const {
 }
 
 BatchResult find_batch(const CombinedScans& combined, const VoxelMap& map, const CoarseMap& coarse_map,
-                       const CoarseOptions& coarse, const VerdictOptions& verdict) {
+                       const CoarseOptions& coarse, const VerdictOptions& verdict, const FineOptions& fine) {
   verdict.check();
-  BatchResult result;
-  if (combined.sample.fine.size() < verdict.min_points) {
-    result.reason = "too few points: " + std::to_string(combined.sample.fine.size()) + " of " +
-                    std::to_string(verdict.min_points) + " needed, 1.5 m apart";
-    return result;
+  fine.check();
+  if (combined.sample.fine.size() >= verdict.min_points) {
+    return compare_hypotheses(combined, map, find_coarse(combined.level, coarse_map, coarse), verdict, fine);
   }
-  const std::vector<PoseHypothesis> hypotheses = find_coarse(combined.level, coarse_map, coarse);
-  const Eigen::Vector3d center = center_of(combined.sample.fine);
-  result.candidates = without_repetitions(align_all_coarsely(combined, map, hypotheses), center);
-  align_best_finely(result.candidates, combined, map);
-  result.candidates = without_repetitions(std::move(result.candidates), center);
+  BatchResult result;
+  result.reason = "too few points: " + std::to_string(combined.sample.fine.size()) + " of " +
+                  std::to_string(verdict.min_points) + " needed, 1.5 m apart";
+  return result;
+}
+
+BatchResult compare_hypotheses(const CombinedScans& combined, const VoxelMap& map,
+                               std::span<const PoseHypothesis> hypotheses, const VerdictOptions& verdict,
+                               const FineOptions& fine) {
+  verdict.check();
+  fine.check();
+  Search search{combined, map, verdict, fine, center_of(combined.sample.fine)};
+  search.fine.search_headings = false;
+  BatchResult result;
+  result.candidates = align_contenders(places_of(hypotheses, search), search);
   result.reason = reason_not_found(result.candidates, verdict);
   return result;
 }

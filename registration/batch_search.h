@@ -46,15 +46,25 @@ struct BatchCandidate {
 
 /// Where a batch lies, or why that is not known.
 struct BatchResult {
-  std::vector<BatchCandidate> candidates;  ///< the best and its rival, the better first; not alike
+  std::vector<BatchCandidate> candidates;  ///< the best and its rivals, the better first; no two alike
   std::string reason;                      ///< empty when found
 
   bool found() const { return reason.empty(); }
 };
 
-/// Looks for a batch in the whole map: coarse hypotheses, each aligned on all levels, compared with each other, and the
-/// best of them judged. `coarse_map` belongs to the map's coarsest level. The same for any number of threads.
+/// Looks for a batch in the whole map: coarse hypotheses, compared by compare_hypotheses(). `coarse_map` belongs to the
+/// map's coarsest level. The same for any number of threads.
 BatchResult find_batch(const CombinedScans& combined, const VoxelMap& map, const CoarseMap& coarse_map,
-                       const CoarseOptions& coarse = {}, const VerdictOptions& verdict = {});
+                       const CoarseOptions& coarse = {}, const VerdictOptions& verdict = {},
+                       const FineOptions& fine = {});
+
+/// Aligns hypotheses, best supported first and in the map's local frame, and judges the best of them. Those that come
+/// to one place count as one, and the next takes their turn: until there is a rival, and up to six places while half as
+/// many features speak for them as for the first. The best two are aligned on all levels, and each other that could
+/// come near the best by that, so that no place that looks alike is left out of the comparison. Headings are not
+/// searched, whatever `fine` says: a hypothesis has one. The same for any number of threads.
+BatchResult compare_hypotheses(const CombinedScans& combined, const VoxelMap& map,
+                               std::span<const PoseHypothesis> hypotheses, const VerdictOptions& verdict = {},
+                               const FineOptions& fine = {});
 
 }  // namespace vdbmap::registration

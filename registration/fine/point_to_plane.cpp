@@ -32,8 +32,12 @@ MatchingStage wide_stage(const VoxelLevel& level, std::span<const Eigen::Vector3
   return {&level, points, {.search_voxels = 2, .min_planarity = 0.5, .plane_from_voxel = true}, {3.0, 0.2, 0.8}, 20};
 }
 
-MatchingStage coarse_stage(const VoxelLevel& level, std::span<const Eigen::Vector3d> points) {
-  return {&level, points, {.search_voxels = 1, .min_planarity = 0.3, .plane_from_voxel = true}, {1.0, 0.2, 0.6}, 10};
+MatchingStage coarse_stage(const VoxelLevel& level, std::span<const Eigen::Vector3d> points, int max_iterations) {
+  return {&level,
+          points,
+          {.search_voxels = 1, .min_planarity = 0.3, .plane_from_voxel = true},
+          {1.0, 0.2, 0.6},
+          std::min(10, max_iterations)};
 }
 
 MatchingStage middle_stage(const VoxelLevel& level, std::span<const Eigen::Vector3d> points) {
@@ -76,9 +80,10 @@ bool is_far(const Eigen::Isometry3d& a, const Eigen::Isometry3d& b) {
 }
 
 Eigen::Isometry3d align_on_coarser_levels(const SampledScan& sample, const VoxelMap& map,
-                                          Eigen::Isometry3d local_from_scan) {
+                                          Eigen::Isometry3d local_from_scan, const FineOptions& options) {
   for (std::size_t i = map.levels.size(); i-- > 1;) {
-    local_from_scan = run_rounds(coarse_stage(map.levels[i], sample.coarse), local_from_scan).local_from_scan;
+    const MatchingStage stage = coarse_stage(map.levels[i], sample.coarse, options.max_iterations);
+    local_from_scan = run_rounds(stage, local_from_scan).local_from_scan;
   }
   return local_from_scan;
 }
@@ -86,7 +91,7 @@ Eigen::Isometry3d align_on_coarser_levels(const SampledScan& sample, const Voxel
 // Coarser levels from the coarsest down, then the finest.
 RoundsResult align_through_levels(const SampledScan& sample, const VoxelMap& map, Eigen::Isometry3d local_from_scan,
                                   const FineOptions& options) {
-  local_from_scan = align_on_coarser_levels(sample, map, local_from_scan);
+  local_from_scan = align_on_coarser_levels(sample, map, local_from_scan, options);
   return run_rounds(fine_stage(map.finest(), sample.fine, options.max_iterations), local_from_scan);
 }
 
@@ -178,13 +183,14 @@ FineResult align_sample(const SampledScan& sample, const VoxelMap& map, const Ei
 }
 
 Eigen::Isometry3d align_coarsely(const SampledScan& sample, const VoxelMap& map,
-                                 const Eigen::Isometry3d& map_from_scan_guess) {
+                                 const Eigen::Isometry3d& map_from_scan_guess, const FineOptions& options) {
+  options.check();
   check_guess(map_from_scan_guess);
   if (map.levels.empty()) throw std::invalid_argument("the map has no levels");
   Eigen::Isometry3d local_from_scan = map_from_scan_guess;
   local_from_scan.translation() -= map.frame.anchor;
   local_from_scan = run_rounds(wide_stage(map.coarsest(), sample.coarse), local_from_scan).local_from_scan;
-  local_from_scan = align_on_coarser_levels(sample, map, local_from_scan);
+  local_from_scan = align_on_coarser_levels(sample, map, local_from_scan, options);
   local_from_scan.translation() += map.frame.anchor;
   return local_from_scan;
 }

@@ -18,7 +18,7 @@ struct FineOptions {
   double coarse_spacing = 1.5;  ///< [m] of the points used on the coarser levels
   double fine_spacing = 1.0;    ///< [m] of the points used on the finest level; 0.5 m is no better on KITTI streets
   RangeLimits range;
-  int max_iterations = 15;      ///< rounds of matching and solving on each level
+  int max_iterations = 15;      ///< rounds of matching and solving on each level, at most 10 of them on coarser ones
   bool search_headings = true;  ///< other headings are tried where few points fit; not needed within 1 m and 3 degrees
 
   /// Throws std::invalid_argument naming the value and what is allowed.
@@ -33,7 +33,7 @@ struct FineResult {
   double inlier_share = 0;                 ///< of the sampled points: matched within 0.15 m of a plane
   double rms_distance = 0;                 ///< [m] of the inliers from their planes
   std::size_t num_points = 0;              ///< sampled points
-  bool converged = false;                  ///< the last round moved the scan by less than 1 mm and 0.01 degrees
+  bool converged = false;                  ///< the last round's step was less than 1 mm and 0.01 degrees
   std::vector<UnobservableDirection> unobservable;
 };
 
@@ -47,7 +47,7 @@ FineResult align_sample(const SampledScan& sample, const VoxelMap& map, const Ei
 /// Aligns on the coarser levels only, beginning with residuals of 3 m on the coarsest: for guesses of the coarse
 /// search. Good to some centimetres. Throws as align_sample().
 Eigen::Isometry3d align_coarsely(const SampledScan& sample, const VoxelMap& map,
-                                 const Eigen::Isometry3d& map_from_scan_guess);
+                                 const Eigen::Isometry3d& map_from_scan_guess, const FineOptions& options = {});
 
 /// As align_sample(), for all points of a scan.
 FineResult align_scan(const PointCloud& scan, const VoxelMap& map, const Eigen::Isometry3d& map_from_scan_guess,
