@@ -2,6 +2,7 @@
 #include "registration/fine/joint_refinement.h"
 
 #include <array>
+#include <cmath>
 #include <numbers>
 #include <sstream>
 #include <stdexcept>
@@ -10,6 +11,8 @@
 #include <Eigen/Cholesky>
 #include <ceres/ceres.h>
 #include <ceres/rotation.h>
+
+#include "registration/fine/odometry_trust.h"
 
 namespace vdbmap::registration {
 namespace {
@@ -59,17 +62,17 @@ void difference(const std::array<T, 4>& rotation_a, const T* translation_a, cons
 
 // How far a scan is from where the map alone puts it.
 struct MapFactor {
-  Eigen::Isometry3d guess;
+  Eigen::Isometry3d start;
   Eigen::Isometry3d in_map;
   Matrix6d whiten;
 
   template <typename T>
   bool operator()(const T* motion, T* residual) const {
-    const std::array<T, 4> rotation = moved_rotation(motion, guess.linear());
+    const std::array<T, 4> rotation = moved_rotation(motion, start.linear());
     const std::array<T, 4> rotation_in_map = quaternion_of<T>(in_map.linear());
     std::array<T, 3> translation, translation_in_map;
     for (int i = 0; i < 3; ++i) {
-      translation[static_cast<std::size_t>(i)] = motion[3 + i] + guess.translation()[i];
+      translation[static_cast<std::size_t>(i)] = motion[3 + i] + start.translation()[i];
       translation_in_map[static_cast<std::size_t>(i)] = T(in_map.translation()[i]);
     }
     Eigen::Matrix<T, 6, 1> error;
@@ -81,20 +84,20 @@ struct MapFactor {
 
 // How far a step is from what odometry says: previous_from_scan against T_previous^-1 T_scan.
 struct OdometryFactor {
-  Eigen::Isometry3d previous_guess;
-  Eigen::Isometry3d guess;
+  Eigen::Isometry3d previous_start;
+  Eigen::Isometry3d start;
   Eigen::Isometry3d previous_from_scan;
   double per_radian;
   double per_metre;
 
   template <typename T>
   bool operator()(const T* previous_motion, const T* motion, T* residual) const {
-    const std::array<T, 4> back = inverse_of(moved_rotation(previous_motion, previous_guess.linear()));
-    const std::array<T, 4> rotation = moved_rotation(motion, guess.linear());
+    const std::array<T, 4> back = inverse_of(moved_rotation(previous_motion, previous_start.linear()));
+    const std::array<T, 4> rotation = moved_rotation(motion, start.linear());
     std::array<T, 3> step, step_in_previous;
     for (int i = 0; i < 3; ++i) {
       step[static_cast<std::size_t>(i)] =
-          motion[3 + i] - previous_motion[3 + i] + (guess.translation()[i] - previous_guess.translation()[i]);
+          motion[3 + i] - previous_motion[3 + i] + (start.translation()[i] - previous_start.translation()[i]);
     }
     ceres::QuaternionRotatePoint(back.data(), step.data(), step_in_previous.data());
     std::array<T, 4> turn;
@@ -127,22 +130,26 @@ std::vector<bool> held_scans(std::span<const SequencePose> sequence) {
   return held;
 }
 
+void add_map_factor(ceres::Problem& problem, const PoseEstimate& in_map, const Eigen::Isometry3d& start, Motion& motion,
+                    double outlier_scale) {
+  auto* factor = new MapFactor{start, in_map.map_from_scan, whitening(in_map.covariance)};
+  problem.AddResidualBlock(new ceres::AutoDiffCostFunction<MapFactor, 6, 6>(factor),
+                           new ceres::CauchyLoss(outlier_scale), motion.data());
+}
+
 void add_factors(ceres::Problem& problem, std::span<const SequencePose> sequence, const std::vector<bool>& held,
-                 std::vector<Motion>& motions, const JointOptions& options) {
+                 const OdometryTrust& trust, std::vector<Motion>& motions, const JointOptions& options) {
   const double per_radian = 180 / std::numbers::pi / options.odometry_rotation_deg;
   const double per_metre = 1 / options.odometry_translation;
   for (std::size_t i = 0; i < sequence.size(); ++i) {
     if (!held[i]) continue;
     const SequencePose& scan = sequence[i];
-    if (scan.in_map) {
-      auto* factor =
-          new MapFactor{scan.map_from_scan_guess, scan.in_map->map_from_scan, whitening(scan.in_map->covariance)};
-      problem.AddResidualBlock(new ceres::AutoDiffCostFunction<MapFactor, 6, 6>(factor),
-                               new ceres::CauchyLoss(options.outlier_scale), motions[i].data());
-    }
+    if (scan.in_map) add_map_factor(problem, *scan.in_map, trust.start[i], motions[i], options.outlier_scale);
     if (i == 0 || !scan.previous_from_scan) continue;
-    auto* factor = new OdometryFactor{sequence[i - 1].map_from_scan_guess, scan.map_from_scan_guess,
-                                      *scan.previous_from_scan, per_radian, per_metre};
+    const StepWeights& weights = trust.weights[i];
+    auto* factor =
+        new OdometryFactor{trust.start[i - 1], trust.start[i], *scan.previous_from_scan,
+                           std::sqrt(weights.rotation) * per_radian, std::sqrt(weights.translation) * per_metre};
     problem.AddResidualBlock(new ceres::AutoDiffCostFunction<OdometryFactor, 6, 6, 6>(factor), nullptr,
                              motions[i - 1].data(), motions[i].data());
   }
@@ -197,15 +204,16 @@ std::vector<PoseEstimate> refine_jointly(std::span<const SequencePose> sequence,
   options.check();
   std::vector<Motion> motions(sequence.size(), Motion{});
   const std::vector<bool> held = held_scans(sequence);
+  const OdometryTrust trust = trust_odometry(sequence, options);
   ceres::Problem problem;
-  add_factors(problem, sequence, held, motions, options);
+  add_factors(problem, sequence, held, trust, motions, options);
   if (problem.NumResidualBlocks() > 0) solve(problem);
 
   const std::vector<Matrix6d> covariances = covariances_of(problem, held, motions);
   std::vector<PoseEstimate> poses(sequence.size());
   for (std::size_t i = 0; i < sequence.size(); ++i) {
     const Eigen::Map<const Vector6d> motion(motions[i].data());
-    poses[i] = {moved_by(sequence[i].map_from_scan_guess, motion), covariances[i]};
+    poses[i] = {moved_by(trust.start[i], motion), covariances[i]};
   }
   return poses;
 }

@@ -264,6 +264,37 @@ TEST(Localizer, RefusesOptionsOutOfRange) {
   EXPECT_THROW(Localizer(street_map(), options), std::invalid_argument);
 }
 
+class SlipOfGivenOdometry : public testing::TestWithParam<double> {};
+
+// Between two scans of a batch and between two batches. What is found lies where it lies without the slip. 5 m are more
+// than a scan can be tracked over.
+TEST_P(SlipOfGivenOdometry, MovesNoScanThatIsFound) {
+  static const Drive drive(12);
+  LocalizerOptions options;
+  options.batch_size = 4;
+  const auto localize_with_slip = [&](std::size_t scan, double slip) {
+    Localizer localizer(street_map(), options);
+    for (std::size_t i = 0; i < drive.scans.size(); ++i) {
+      const Eigen::Isometry3d odometry = drive.map_from_scan[0].inverse() * drive.map_from_scan[i];
+      const double moved = i >= scan ? slip : 0;
+      localizer.add({drive.scans[i].positions, Eigen::Translation3d(0.8 * moved, 0.6 * moved, 0) * odometry, true});
+    }
+    return localizer.finish();
+  };
+  static const SequenceResult before = localize_with_slip(0, 0);
+  for (const std::size_t scan : {4U, 6U}) {
+    const SequenceResult after = localize_with_slip(scan, GetParam());
+    for (std::size_t i = 0; i < drive.scans.size(); ++i) {
+      EXPECT_TRUE(after.scans[i].found() || GetParam() > 2) << scan << " " << i << ": " << after.scans[i].reason;
+      if (!after.scans[i].found()) continue;
+      const auto shift = test::distance_between(after.scans[i].map_from_scan, before.scans[i].map_from_scan);
+      EXPECT_LT(shift.translation, 0.02) << scan << " " << i;
+    }
+  }
+}
+
+INSTANTIATE_TEST_SUITE_P(Metres, SlipOfGivenOdometry, testing::Values(0.5, 5.0));
+
 // Two batches that odometry says lie 3 m apart, but one of them is a scan of another part of the street.
 TEST(Localizer, BelievesNoBatchThatOdometryContradicts) {
   const Drive here(3, -20), there(3, 14);
