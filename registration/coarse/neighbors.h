@@ -33,11 +33,11 @@ void for_each_neighbor(const VoxelFinder& finder, const VoxelLevel& level, std::
 template <typename Body>
 void parallel_for_each_with_finder(const VoxelLevel& level, const Body& body) {
   constexpr std::size_t kLeafGrain = 16;
-  const std::vector<const VoxelLeaf*> leaves = level.leaves();
+  const std::span<const VoxelLeaf> leaves = level.leaves();
   parallel_ranges(leaves.size(), kLeafGrain, [&](std::size_t begin, std::size_t end) {
     const VoxelFinder finder(level);
     for (std::size_t i = begin; i < end; ++i) {
-      for_each_voxel(*leaves[i], [&](const VoxelIndex& voxel, std::size_t number) { body(finder, voxel, number); });
+      for_each_voxel(leaves[i], [&](const VoxelIndex& voxel, std::size_t number) { body(finder, voxel, number); });
     }
   });
 }

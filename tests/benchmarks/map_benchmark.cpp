@@ -88,7 +88,7 @@ void count_bytes(benchmark::State& state, const VoxelMap& map, double heap, cons
   const auto voxels = static_cast<double>(map.finest().size());
   state.counters["voxels"] = voxels;
   state.counters["points_per_voxel"] = static_cast<double>(num_points(map.finest())) / voxels;
-  state.counters["voxels_per_leaf"] = voxels / map.finest().tree().leafCount();
+  state.counters["voxels_per_leaf"] = voxels / static_cast<double>(map.finest().leaves().size());
   state.counters["memory_B_per_voxel"] = static_cast<double>(memory_bytes(map)) / voxels;
   state.counters["heap_B_per_voxel"] = heap / voxels;
   state.counters["file_B_per_voxel"] = static_cast<double>(std::filesystem::file_size(file)) / voxels;

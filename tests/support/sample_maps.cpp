@@ -42,7 +42,7 @@ bool same_bytes(std::span<const VoxelRecord> a, std::span<const VoxelRecord> b) 
 
 std::string difference(const VoxelLevel& a, const VoxelLevel& b) {
   if (a.voxel_size() != b.voxel_size()) return "voxel sizes";
-  if (!a.tree().hasSameTopology(b.tree())) return "topology";
+  if (!same_voxels(a, b)) return "topology";
   if (!same_bytes(a.records(), b.records())) return "records";
   std::string found;
   for_each_channel([&](const char* name, auto channel) {
@@ -58,6 +58,8 @@ BuildOptions anchored(const Eigen::Vector3d& anchor) {
   options.anchor = anchor;
   return options;
 }
+
+bool same_voxels(const VoxelLevel& a, const VoxelLevel& b) { return std::ranges::equal(a.leaves(), b.leaves()); }
 
 VoxelMap map_of_voxels(const std::vector<VoxelIndex>& voxels) {
   PointCloud cloud;

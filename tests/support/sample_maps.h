@@ -30,6 +30,9 @@ VoxelMap map_of_voxels(const std::vector<VoxelIndex>& voxels);
 /// The 1 m level of a cloud, anchored at the origin.
 VoxelLevel coarse_level(const PointCloud& cloud);
 
+/// Whether two levels have the same voxels occupied.
+bool same_voxels(const VoxelLevel& a, const VoxelLevel& b);
+
 /// What differs first between two maps, down to the bits of every record; empty where they are equal.
 std::string difference(const VoxelMap& a, const VoxelMap& b);
 

@@ -111,8 +111,8 @@ TEST_F(Render, FilesThatCannotBeUsedHaveTheirOwnCodes) {
 
 TEST_F(Render, AMapWithoutVoxelsIsBadInput) {
   VoxelMap empty;
-  empty.levels.emplace_back(0.1, std::vector<std::unique_ptr<VoxelLeaf>>{}, LargeVector<VoxelRecord>{});
-  empty.levels.emplace_back(1.0, std::vector<std::unique_ptr<VoxelLeaf>>{}, LargeVector<VoxelRecord>{});
+  empty.levels.emplace_back(0.1, LargeVector<VoxelLeaf>{}, LargeVector<VoxelRecord>{});
+  empty.levels.emplace_back(1.0, LargeVector<VoxelLeaf>{}, LargeVector<VoxelRecord>{});
   save_map(path("empty.vdb"), empty);
   expect_error(vdbmap({"render", path("empty.vdb"), "-o", path("a.png")}), ExitCode::kBadInput, "empty.vdb");
 }

@@ -2,8 +2,6 @@
 #include "vdbmap/core/finest_level.h"
 
 #include <cstddef>
-#include <iterator>
-#include <memory>
 #include <numeric>
 #include <utility>
 #include <vector>
@@ -41,12 +39,9 @@ class LevelMaker {
     if (points_) add_to_known_blocks();
     list_sources();
     allocate();
-    std::vector<std::vector<std::unique_ptr<VoxelLeaf>>> leaves_of_source(sources_.size());
+    std::vector<std::vector<VoxelLeaf>> leaves_of_source(sources_.size());
     parallel_for(sources_.size(), [&](std::size_t i) { leaves_of_source[i] = make_block(sources_[i]); });
-
-    std::vector<std::unique_ptr<VoxelLeaf>> leaves;
-    for (auto& part : leaves_of_source) std::move(part.begin(), part.end(), std::back_inserter(leaves));
-    return {options_.voxel_size, std::move(leaves), std::move(records_), std::move(channels_)};
+    return {options_.voxel_size, join(std::move(leaves_of_source)), std::move(records_), std::move(channels_)};
   }
 
  private:
@@ -94,7 +89,19 @@ class LevelMaker {
     }
   }
 
-  std::vector<std::unique_ptr<VoxelLeaf>> make_block(const BlockSource& source) {
+  static LargeVector<VoxelLeaf> join(std::vector<std::vector<VoxelLeaf>> parts) {
+    std::size_t count = 0;
+    for (const auto& part : parts) count += part.size();
+    LargeVector<VoxelLeaf> leaves;
+    leaves.reserve(count);
+    for (auto& part : parts) {
+      leaves.insert(leaves.end(), part.begin(), part.end());
+      part = {};  // not both at once
+    }
+    return leaves;
+  }
+
+  std::vector<VoxelLeaf> make_block(const BlockSource& source) {
     BlockMaker maker(*this, source);
     if (source.content) {
       const BlockSums voxels = std::move(source.content->sums);  // freed as soon as they are converted
@@ -129,7 +136,7 @@ class LevelMaker {
       ++record_;
     }
 
-    std::vector<std::unique_ptr<VoxelLeaf>> take_leaves() { return leaves_.take(); }
+    std::vector<VoxelLeaf> take_leaves() { return leaves_.take(); }
 
    private:
     LevelMaker& level_;

@@ -2,8 +2,10 @@
 #include "vdbmap/core/hierarchy.h"
 
 #include <algorithm>
-#include <cmath>
+#include <compare>
+#include <functional>
 #include <limits>
+#include <span>
 
 #include "vdbmap/core/label_votes.h"
 #include "vdbmap/core/normals.h"
@@ -34,10 +36,20 @@ struct ParentSums {
   }
 };
 
-struct KeyedParent {
-  VoxelIndex voxel;
-  VoxelKey key;
-  ParentSums sums;
+// The voxels of one leaf that one parent covers.
+struct PartOfParent {
+  VoxelKey parent;
+  std::uint32_t leaf;  // its number
+
+  auto operator<=>(const PartOfParent&) const = default;
+};
+
+// What is stored of a parent.
+struct ParentVoxel {
+  VoxelRecord record;
+  float intensity = 0;
+  std::int32_t first_epoch = 0;
+  std::int32_t last_epoch = 0;
 };
 
 ParentSums sums_of_child(const VoxelLevel& fine, std::size_t number, const VoxelIndex& child,
@@ -57,88 +69,139 @@ ParentSums sums_of_child(const VoxelLevel& fine, std::size_t number, const Voxel
   return sums;
 }
 
-// Parents of one leaf's voxels; few, so a linear search finds them.
-void gather_parents(const VoxelLevel& fine, const VoxelLeaf& leaf, std::int32_t factor,
-                    std::vector<KeyedParent>& parents) {
-  const std::size_t first_of_leaf = parents.size();
-  for_each_voxel(leaf, [&](const VoxelIndex& child, std::size_t number) {
-    const VoxelIndex voxel = parent_of_voxel(child, factor);
-    auto parent = std::find_if(parents.rbegin(), parents.rend() - static_cast<std::ptrdiff_t>(first_of_leaf),
-                               [&](const KeyedParent& candidate) { return candidate.voxel == voxel; });
-    if (parent == parents.rend() - static_cast<std::ptrdiff_t>(first_of_leaf)) {
-      parents.push_back({voxel, key_of_voxel(voxel), {}});
-      parent = parents.rbegin();
-    }
-    parent->sums.add(sums_of_child(fine, number, child, center_of_voxel(voxel, fine.voxel_size() * factor)));
-  });
+// Calls body(child, number) for the voxels of a leaf that a parent covers, in the order of the records.
+template <typename Body>
+void for_each_child(const VoxelLeaf& leaf, const VoxelIndex& parent, std::int32_t factor, const Body& body) {
+  const VoxelIndex first = first_child_of_voxel(parent, factor);
+  const VoxelIndex low = VoxelIndex::maxComponent(first, leaf.origin());
+  const VoxelIndex high =
+      VoxelIndex::minComponent(first.offsetBy(factor - 1), leaf.origin().offsetBy(VoxelLeaf::DIM - 1));
+  for_each_voxel_in(leaf, low, high, body);
 }
 
-std::vector<KeyedParent> gather_all_parents(const VoxelLevel& fine, std::int32_t factor) {
-  constexpr std::size_t kLeavesPerRange = 256;  // fixed, so that sums do not depend on the threads
-  const std::vector<const VoxelLeaf*> leaves = fine.leaves();
-  std::vector<std::vector<KeyedParent>> ranges((leaves.size() + kLeavesPerRange - 1) / kLeavesPerRange);
-  parallel_for(ranges.size(), [&](std::size_t i) {
-    const std::size_t end = std::min(leaves.size(), (i + 1) * kLeavesPerRange);
-    for (std::size_t leaf = i * kLeavesPerRange; leaf < end; ++leaf) {
-      gather_parents(fine, *leaves[leaf], factor, ranges[i]);
-    }
-  });
-
-  std::vector<KeyedParent> parents;
-  for (const auto& range : ranges) parents.insert(parents.end(), range.begin(), range.end());
-  return parents;
-}
-
-// Adds up the parts of each parent in the order of the leaves they came from.
-std::vector<KeyedParent> fold_parents(std::vector<KeyedParent> parts) {
-  std::vector<std::uint32_t> order(parts.size());
-  for (std::size_t i = 0; i < order.size(); ++i) order[i] = static_cast<std::uint32_t>(i);
-  std::stable_sort(order.begin(), order.end(), [&](auto a, auto b) { return parts[a].key < parts[b].key; });
-
-  std::vector<KeyedParent> folded;
-  for (const std::uint32_t i : order) {
-    if (!folded.empty() && folded.back().key == parts[i].key) {
-      folded.back().sums.add(parts[i].sums);
-    } else {
-      folded.push_back(parts[i]);
-    }
+void list_parts_of_leaf(const VoxelLevel& fine, std::uint32_t leaf_number, std::int32_t factor,
+                        std::vector<PartOfParent>& parts) {
+  const VoxelLeaf& leaf = fine.leaves()[leaf_number];
+  const VoxelIndex low = parent_of_voxel(leaf.origin(), factor);
+  const VoxelIndex high = parent_of_voxel(leaf.origin().offsetBy(VoxelLeaf::DIM - 1), factor);
+  for (auto parent = openvdb::CoordBBox(low, high).beginXYZ(); parent; ++parent) {
+    bool is_occupied = false;
+    for_each_child(leaf, *parent, factor, [&](const VoxelIndex&, std::size_t) { is_occupied = true; });
+    if (is_occupied) parts.push_back({key_of_voxel(*parent), leaf_number});
   }
-  return folded;
 }
 
-VoxelRecord record_of(const KeyedParent& parent, double voxel_size) {
-  const ParentSums& sums = parent.sums;
+// The parts of all parents, sorted by parent, then leaf.
+std::vector<PartOfParent> list_parts(const VoxelLevel& fine, std::int32_t factor) {
+  constexpr std::size_t kLeavesPerRange = 256;
+  const std::size_t num_leaves = fine.leaves().size();
+  std::vector<std::vector<PartOfParent>> ranges((num_leaves + kLeavesPerRange - 1) / kLeavesPerRange);
+  parallel_for(ranges.size(), [&](std::size_t i) {
+    const std::size_t end = std::min(num_leaves, (i + 1) * kLeavesPerRange);
+    for (std::size_t leaf = i * kLeavesPerRange; leaf < end; ++leaf) {
+      list_parts_of_leaf(fine, static_cast<std::uint32_t>(leaf), factor, ranges[i]);
+    }
+  });
+
+  std::vector<PartOfParent> parts;
+  for (const auto& range : ranges) parts.insert(parts.end(), range.begin(), range.end());
+  parallel_sort(parts, std::less<>());
+  return parts;
+}
+
+// Where each parent's parts begin, and the end of all.
+std::vector<std::uint32_t> first_parts(const std::vector<PartOfParent>& parts) {
+  std::vector<std::uint32_t> first;
+  for (std::size_t i = 0; i < parts.size(); ++i) {
+    if (i == 0 || parts[i].parent != parts[i - 1].parent) first.push_back(static_cast<std::uint32_t>(i));
+  }
+  first.push_back(static_cast<std::uint32_t>(parts.size()));
+  return first;
+}
+
+// Adds up each leaf's voxels, then the leaves, in their order: the same sums for any number of threads.
+ParentSums sums_of_parts(const VoxelLevel& fine, std::span<const PartOfParent> parts, const VoxelIndex& parent,
+                         std::int32_t factor) {
+  const Eigen::Vector3d center = center_of_voxel(parent, fine.voxel_size() * factor);
+  ParentSums total;
+  for (const PartOfParent& part : parts) {
+    ParentSums sums;
+    for_each_child(fine.leaves()[part.leaf], parent, factor, [&](const VoxelIndex& child, std::size_t number) {
+      sums.add(sums_of_child(fine, number, child, center));
+    });
+    total.add(sums);
+  }
+  return total;
+}
+
+VoxelRecord record_of(const ParentSums& sums, const VoxelIndex& parent, double voxel_size) {
   const Eigen::Vector3d mean = sums.position / sums.count;
   Moments moments;
   moments.count = static_cast<std::int64_t>(sums.count);
-  moments.mean = center_of_voxel(parent.voxel, voxel_size) + mean;
+  moments.mean = center_of_voxel(parent, voxel_size) + mean;
   moments.scatter = sums.product - sums.count * mean * mean.transpose();
 
   VoxelRecord record;
-  set_moments(record, moments, parent.voxel, voxel_size);
+  set_moments(record, moments, parent, voxel_size);
   set_color(record, sums.color / sums.count);
   return record;
 }
 
+ParentVoxel make_parent(const VoxelLevel& fine, std::span<const PartOfParent> parts, std::int32_t factor,
+                        double voxel_size) {
+  const VoxelIndex parent = voxel_of_key(parts.front().parent);
+  const ParentSums sums = sums_of_parts(fine, parts, parent, factor);
+  return {record_of(sums, parent, voxel_size), static_cast<float>(sums.intensity / sums.count), sums.first_epoch,
+          sums.last_epoch};
+}
+
+// Adds parents to the level above, in the order of their keys.
+class ParentAssembly {
+ public:
+  ParentAssembly(const VoxelLevel& fine, std::int32_t factor, double voxel_size, std::size_t num_parents)
+      : channels_(fine.channels()),
+        votes_(channels_.labels.empty() ? std::vector<LabelVotes>() : votes_for_parents(fine, factor)),
+        election_(votes_),
+        assembly_(voxel_size, num_parents) {}
+  ParentAssembly(const ParentAssembly&) = delete;
+  ParentAssembly& operator=(const ParentAssembly&) = delete;
+
+  void add(VoxelKey key, const ParentVoxel& parent) {
+    [[maybe_unused]] const bool in_order = assembly_.add(voxel_of_key(key), parent.record);
+    VoxelChannels& channels = assembly_.channels();
+    if (!channels_.intensities.empty()) channels.intensities.push_back(parent.intensity);
+    if (!channels_.labels.empty()) channels.labels.push_back(election_.winner(key));
+    if (!channels_.first_epochs.empty()) channels.first_epochs.push_back(parent.first_epoch);
+    if (!channels_.last_epochs.empty()) channels.last_epochs.push_back(parent.last_epoch);
+  }
+
+  VoxelLevel finish() { return assembly_.finish(); }
+
+ private:
+  const VoxelChannels& channels_;  // of the level below
+  std::vector<LabelVotes> votes_;
+  LabelElection election_;  // of votes_
+  VoxelAssembly assembly_;
+};
+
 }  // namespace
 
 VoxelLevel coarsen(const VoxelLevel& fine, std::int32_t factor) {
+  constexpr std::size_t kParentsAtOnce = std::size_t{1} << 16;  // between being made and being added
   const double voxel_size = factor / voxels_per_metre(fine.voxel_size());
-  const std::vector<KeyedParent> parents = fold_parents(gather_all_parents(fine, factor));
+  const std::vector<PartOfParent> parts = list_parts(fine, factor);
+  const std::vector<std::uint32_t> first = first_parts(parts);
+  const std::size_t num_parents = first.size() - 1;
+  const auto parts_of = [&](std::size_t i) { return std::span(parts).subspan(first[i], first[i + 1] - first[i]); };
 
-  const bool has_labels = !fine.channels().labels.empty();
-  const std::vector<LabelVotes> votes = has_labels ? votes_for_parents(fine, factor) : std::vector<LabelVotes>();
-  LabelElection election(votes);
-
-  VoxelAssembly assembly(voxel_size, parents.size());
-  for (const KeyedParent& parent : parents) {
-    [[maybe_unused]] const bool in_order = assembly.add(parent.voxel, record_of(parent, voxel_size));
-    if (!fine.channels().intensities.empty()) {
-      assembly.channels().intensities.push_back(static_cast<float>(parent.sums.intensity / parent.sums.count));
-    }
-    if (has_labels) assembly.channels().labels.push_back(election.winner(parent.key));
-    if (!fine.channels().first_epochs.empty()) assembly.channels().first_epochs.push_back(parent.sums.first_epoch);
-    if (!fine.channels().last_epochs.empty()) assembly.channels().last_epochs.push_back(parent.sums.last_epoch);
+  ParentAssembly assembly(fine, factor, voxel_size, num_parents);
+  std::vector<ParentVoxel> parents;
+  for (std::size_t begin = 0; begin < num_parents; begin += kParentsAtOnce) {
+    parents.resize(std::min(kParentsAtOnce, num_parents - begin));
+    parallel_for(
+        parents.size(), [&](std::size_t i) { parents[i] = make_parent(fine, parts_of(begin + i), factor, voxel_size); },
+        64);
+    for (std::size_t i = 0; i < parents.size(); ++i) assembly.add(parts_of(begin + i).front().parent, parents[i]);
   }
   VoxelLevel level = assembly.finish();
   compute_normals(level);

@@ -57,13 +57,13 @@ std::vector<LabelVotes> merge_votes(const std::vector<LabelVotes>& a, const std:
 
 std::vector<LabelVotes> votes_for_parents(const VoxelLevel& fine, std::int32_t factor) {
   constexpr std::size_t kLeavesPerRange = 256;
-  const std::vector<const VoxelLeaf*> leaves = fine.leaves();
+  const std::span<const VoxelLeaf> leaves = fine.leaves();
   const std::vector<std::int32_t>& labels = fine.channels().labels;
   std::vector<std::vector<LabelVotes>> ranges((leaves.size() + kLeavesPerRange - 1) / kLeavesPerRange);
   parallel_for(ranges.size(), [&](std::size_t i) {
     const std::size_t end = std::min(leaves.size(), (i + 1) * kLeavesPerRange);
     for (std::size_t leaf = i * kLeavesPerRange; leaf < end; ++leaf) {
-      for_each_voxel(*leaves[leaf], [&](const VoxelIndex& voxel, std::size_t number) {
+      for_each_voxel(leaves[leaf], [&](const VoxelIndex& voxel, std::size_t number) {
         const VoxelKey parent = key_of_voxel(parent_of_voxel(voxel, factor));
         add_vote(ranges[i], parent, labels[number], fine.records()[number].count);
       });

@@ -39,7 +39,7 @@ void LeafNeighborhood::load(const VoxelLeaf& leaf) {
   std::array<const VoxelLeaf*, kNumNeighbors> neighbors;
   rows_.fill(0);
   for (std::size_t i = 0; i < kNumNeighbors; ++i) {
-    neighbors[i] = accessor_.probeConstLeaf(leaf.origin() + first_child_of_voxel(steps[i], VoxelLeaf::DIM));
+    neighbors[i] = level_.tree().find_leaf(leaf.origin() + first_child_of_voxel(steps[i], VoxelLeaf::DIM));
     if (neighbors[i]) mark_cells(*neighbors[i], steps[i]);
   }
   number_rows();

@@ -22,7 +22,7 @@ struct alignas(32) NeighborhoodSums {
 /// occupied cells lie one after the other in the order of rows and cells: three neighbours in a row are one short run.
 class LeafNeighborhood {
  public:
-  explicit LeafNeighborhood(const VoxelLevel& level) : level_(level), accessor_(level.tree()) {}
+  explicit LeafNeighborhood(const VoxelLevel& level) : level_(level) {}
 
   /// Collects the leaf's voxels and their neighbours.
   void load(const VoxelLeaf& leaf);
@@ -43,7 +43,6 @@ class LeafNeighborhood {
   NeighborhoodSums sums_of(const VoxelRecord& record, const VoxelIndex& from_origin) const;
 
   const VoxelLevel& level_;
-  openvdb::tree::ValueAccessor<const VoxelTree, false> accessor_;
   std::array<std::uint16_t, 100> rows_{};          // bit z + 1 of row (x, y): the cell is occupied
   std::array<std::uint16_t, 101> first_in_row_{};  // number of the sums of a row's first occupied cell
   std::vector<NeighborhoodSums> sums_;

@@ -59,12 +59,12 @@ void set_planes_of_leaf(const VoxelLeaf& leaf, const LeafNeighborhood& neighborh
 
 void compute_normals(VoxelLevel& level) {
   constexpr std::size_t kGrain = 32;
-  const std::vector<const VoxelLeaf*> leaves = level.leaves();
+  const std::span<const VoxelLeaf> leaves = level.leaves();
   parallel_ranges(leaves.size(), kGrain, [&](std::size_t begin, std::size_t end) {
     LeafNeighborhood neighborhood(level);
     for (std::size_t i = begin; i < end; ++i) {
-      neighborhood.load(*leaves[i]);
-      set_planes_of_leaf(*leaves[i], neighborhood, level.records());
+      neighborhood.load(leaves[i]);
+      set_planes_of_leaf(leaves[i], neighborhood, level.records());
     }
   });
 }

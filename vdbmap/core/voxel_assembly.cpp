@@ -12,14 +12,15 @@ bool VoxelAssembly::add(const VoxelIndex& voxel, const VoxelRecord& record) {
   if (!records_.empty() && key <= last_key_) return false;
   last_key_ = key;
 
-  const VoxelIndex origin(voxel.x() & ~7, voxel.y() & ~7, voxel.z() & ~7);
-  if (leaves_.empty() || leaves_.back()->origin() != origin) leaves_.push_back(std::make_unique<VoxelLeaf>(origin));
-  leaves_.back()->setValueOn(VoxelLeaf::coordToOffset(voxel));
+  const VoxelIndex origin = VoxelTree::origin_of_leaf(voxel);
+  if (leaves_.empty() || leaves_.back().origin() != origin) leaves_.emplace_back(origin);
+  leaves_.back().setValueOn(VoxelLeaf::coordToOffset(voxel));
   records_.push_back(record);
   return true;
 }
 
 VoxelLevel VoxelAssembly::finish() {
+  leaves_.shrink_to_fit();
   return {voxel_size_, std::move(leaves_), std::move(records_), std::move(channels_)};
 }
 

@@ -2,8 +2,6 @@
 #pragma once
 
 #include <cstddef>
-#include <memory>
-#include <vector>
 
 #include "vdbmap/core/voxel_block.h"
 #include "vdbmap/core/voxel_level.h"
@@ -26,7 +24,7 @@ class VoxelAssembly {
  private:
   double voxel_size_;
   VoxelKey last_key_{0};
-  std::vector<std::unique_ptr<VoxelLeaf>> leaves_;
+  LargeVector<VoxelLeaf> leaves_;
   LargeVector<VoxelRecord> records_;
   VoxelChannels channels_;
 };

@@ -29,9 +29,9 @@ BlockSums merge_blocks(BlockSums a, BlockSums b) {
 void BlockLeaves::add(KeyInBlock voxel) {
   if (voxel >> 9 != leaf_of_last_) {
     leaf_of_last_ = voxel >> 9;
-    leaves_.push_back(std::make_unique<VoxelLeaf>(origin_ + leaf_origin_in_block(voxel)));
+    leaves_.emplace_back(origin_ + leaf_origin_in_block(voxel));
   }
-  leaves_.back()->setValueOn(offset_in_leaf(voxel));
+  leaves_.back().setValueOn(offset_in_leaf(voxel));
 }
 
 }  // namespace vdbmap

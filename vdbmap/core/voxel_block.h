@@ -2,7 +2,6 @@
 #pragma once
 
 #include <cstdint>
-#include <memory>
 #include <utility>
 #include <vector>
 
@@ -10,8 +9,8 @@
 #include "vdbmap/core/voxel_level.h"
 #include "vdbmap/core/voxel_sums.h"
 
-/// Blocks are cubes of 128 voxels, OpenVDB's lowest internal nodes. Keys sort blocks, and voxels within a block, in the
-/// order in which OpenVDB walks its tree.
+/// Blocks are cubes of 128 voxels, the lowest internal nodes of OpenVDB's standard tree. Keys sort blocks, and voxels
+/// within a block, in the order in which OpenVDB walks that tree.
 namespace vdbmap {
 
 /// Sort key of a block, 42 bits.
@@ -72,6 +71,15 @@ inline VoxelKey key_of_voxel(const VoxelIndex& voxel) {
   return key_of_voxel(block_of_voxel(voxel), key_in_block(voxel));
 }
 
+/// The voxel of a key.
+inline VoxelIndex voxel_of_key(VoxelKey key) {
+  const auto number = static_cast<std::uint64_t>(key);
+  const auto in_block = static_cast<KeyInBlock>(number & ((std::uint64_t{1} << (3 * kBlockBits)) - 1));
+  const auto offset = static_cast<std::int32_t>(offset_in_leaf(in_block));
+  return origin_of_block(BlockKey{number >> (3 * kBlockBits)}) + leaf_origin_in_block(in_block) +
+         VoxelIndex(offset >> 6, offset >> 3 & 7, offset & 7);
+}
+
 /// The sums of one voxel of a block.
 struct KeyedSums {
   KeyInBlock key = 0;
@@ -94,12 +102,12 @@ class BlockLeaves {
   void add(KeyInBlock voxel);
 
   /// The leaves so far, in tree order.
-  std::vector<std::unique_ptr<VoxelLeaf>> take() { return std::move(leaves_); }
+  std::vector<VoxelLeaf> take() { return std::move(leaves_); }
 
  private:
   VoxelIndex origin_;
   KeyInBlock leaf_of_last_ = ~KeyInBlock{0};
-  std::vector<std::unique_ptr<VoxelLeaf>> leaves_;
+  std::vector<VoxelLeaf> leaves_;
 };
 
 }  // namespace vdbmap

@@ -3,29 +3,19 @@
 
 namespace vdbmap {
 
-VoxelLevel::VoxelLevel(double voxel_size, std::vector<std::unique_ptr<VoxelLeaf>> leaves,
-                       LargeVector<VoxelRecord> records, VoxelChannels channels)
-    : voxel_size_(voxel_size),
-      tree_(std::make_shared<VoxelTree>()),
-      records_(std::move(records)),
-      channels_(std::move(channels)) {
+VoxelLevel::VoxelLevel(double voxel_size, LargeVector<VoxelLeaf> leaves, LargeVector<VoxelRecord> records,
+                       VoxelChannels channels)
+    : voxel_size_(voxel_size), records_(std::move(records)), channels_(std::move(channels)) {
   std::size_t first_record = 0;
-  for (std::unique_ptr<VoxelLeaf>& leaf : leaves) {
-    leaf->setTransientData(static_cast<openvdb::Index32>(first_record));
-    first_record += leaf->getValueMask().countOn();
-    tree_->addLeaf(leaf.release());
+  for (VoxelLeaf& leaf : leaves) {
+    leaf.setTransientData(static_cast<openvdb::Index32>(first_record));
+    first_record += leaf.getValueMask().countOn();
   }
-}
-
-std::vector<const VoxelLeaf*> VoxelLevel::leaves() const {
-  std::vector<const VoxelLeaf*> leaves;
-  leaves.reserve(tree_->leafCount());
-  tree_->getNodes(leaves);
-  return leaves;
+  tree_ = std::make_shared<const VoxelTree>(std::move(leaves));
 }
 
 std::size_t VoxelLevel::memory_bytes() const {
-  std::size_t bytes = tree_->memUsage() + records_.capacity() * sizeof(VoxelRecord);
+  std::size_t bytes = tree_->memory_bytes() + records_.capacity() * sizeof(VoxelRecord);
   for_each_channel([&](const char* /*name*/, auto channel) {
     const auto& values = channels_.*channel;
     bytes += values.capacity() * sizeof(values[0]);

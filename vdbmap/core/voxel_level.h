@@ -1,14 +1,14 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #pragma once
 
+#include <array>
 #include <bit>
 #include <cstddef>
 #include <cstdint>
+#include <limits>
 #include <memory>
 #include <span>
 #include <vector>
-
-#include <openvdb/tree/ValueAccessor.h>
 
 #include "vdbmap/core/large_allocator.h"
 #include "vdbmap/core/parallel.h"
@@ -39,12 +39,12 @@ void for_each_channel(const Body& body) {
 ///
 /// The tree holds only bit masks; records lie in one array in the tree's own order (leaf by leaf, within a leaf by
 /// offset), and a leaf's transientData() is the number of its first record. Street leaves are a fifteenth full
-/// (33 to 41 of 512 voxels in KITTI scans), so this costs some 60 bytes a voxel where a PointDataGrid, whose leaves
-/// carry 512 offsets each, costs 130.
+/// (33 to 41 of 512 voxels in KITTI scans), so this costs some 50 bytes a voxel where a PointDataGrid, whose leaves
+/// carry 512 offsets each, costs 130; a voxel alone in its leaf costs 137.
 class VoxelLevel {
  public:
   /// Takes leaves in tree order with empty transientData, and the records of their active voxels in the same order.
-  VoxelLevel(double voxel_size, std::vector<std::unique_ptr<VoxelLeaf>> leaves, LargeVector<VoxelRecord> records,
+  VoxelLevel(double voxel_size, LargeVector<VoxelLeaf> leaves, LargeVector<VoxelRecord> records,
              VoxelChannels channels = {});
 
   double voxel_size() const { return voxel_size_; }  ///< [m]
@@ -55,14 +55,14 @@ class VoxelLevel {
   const VoxelChannels& channels() const { return channels_; }
 
   /// All leaves in tree order, which is the order of the records.
-  std::vector<const VoxelLeaf*> leaves() const;
+  std::span<const VoxelLeaf> leaves() const { return tree_->leaves(); }
 
   /// Tree, records and channels.
   std::size_t memory_bytes() const;
 
  private:
   double voxel_size_;
-  VoxelTree::Ptr tree_;
+  std::shared_ptr<const VoxelTree> tree_;
   LargeVector<VoxelRecord> records_;
   VoxelChannels channels_;
 };
@@ -83,28 +83,56 @@ void for_each_voxel(const VoxelLeaf& leaf, const Body& body) {
   for (auto it = leaf.getValueMask().beginOn(); it; ++it) body(leaf.offsetToGlobalCoord(it.pos()), record++);
 }
 
+/// Number of voxels of a leaf in its layer x, 0 to 7.
+inline std::size_t count_in_layer(const VoxelLeaf& leaf, int x) {
+  return static_cast<std::size_t>(
+      std::popcount(leaf.getValueMask().getWord<openvdb::Index64>(static_cast<openvdb::Index>(x))));
+}
+
+/// Calls body(voxel, record_number) for the voxels of the leaf from `low` to `high`, both included and both in the
+/// leaf, in the order of the records: whole rows of the bit mask at once.
+template <typename Body>
+void for_each_voxel_in(const VoxelLeaf& leaf, const VoxelIndex& low, const VoxelIndex& high, const Body& body) {
+  const std::uint64_t row_bits = ((2u << (high.z() & 7)) - 1) & ~((1u << (low.z() & 7)) - 1);
+  const int first_layer = low.x() & 7;
+  std::size_t first_of_layer = leaf.transientData();
+  for (int i = 0; i < first_layer; ++i) first_of_layer += count_in_layer(leaf, i);
+  for (std::int32_t x = low.x(); x <= high.x(); ++x) {
+    const auto layer = leaf.getValueMask().getWord<openvdb::Index64>(static_cast<openvdb::Index>(x & 7));
+    for (std::int32_t y = low.y(); y <= high.y() && layer != 0; ++y) {
+      std::uint64_t row = layer & row_bits << (8 * (y & 7));
+      for (; row != 0; row &= row - 1) {
+        const int bit = std::countr_zero(row);
+        const auto rank = static_cast<std::size_t>(std::popcount(layer & ((std::uint64_t{1} << bit) - 1)));
+        body(VoxelIndex(x, y, (low.z() & ~7) | (bit & 7)), first_of_layer + rank);
+      }
+    }
+    first_of_layer += static_cast<std::size_t>(std::popcount(layer));
+  }
+}
+
 /// Calls body(voxel, record_number) for every voxel of the level, one after the other in the order of the records.
 template <typename Body>
 void for_each_voxel(const VoxelLevel& level, const Body& body) {
-  for (const VoxelLeaf* leaf : level.leaves()) for_each_voxel(*leaf, body);
+  for (const VoxelLeaf& leaf : level.leaves()) for_each_voxel(leaf, body);
 }
 
 /// Calls body(voxel, record_number) for every voxel of the level, on all threads.
 template <typename Body>
 void parallel_for_each_voxel(const VoxelLevel& level, const Body& body) {
-  const std::vector<const VoxelLeaf*> leaves = level.leaves();
+  const std::span<const VoxelLeaf> leaves = level.leaves();
   parallel_for(
-      leaves.size(), [&](std::size_t i) { for_each_voxel(*leaves[i], body); }, 64);
+      leaves.size(), [&](std::size_t i) { for_each_voxel(leaves[i], body); }, 64);
 }
 
-/// Finds the records of voxels; remembers the way to the last one, so that neighbours cost little. One per task.
+/// Finds the records of voxels; remembers the leaves it met last, so that neighbours cost little. One per task.
 class VoxelFinder {
  public:
-  explicit VoxelFinder(const VoxelLevel& level) : accessor_(level.tree()), records_(level.records().data()) {}
+  explicit VoxelFinder(const VoxelLevel& level) : tree_(level.tree()), records_(level.records().data()) {}
 
   /// The record of an occupied voxel, else nullptr.
   const VoxelRecord* find(const VoxelIndex& voxel) const {
-    const VoxelLeaf* leaf = accessor_.probeConstLeaf(voxel);
+    const VoxelLeaf* leaf = find_leaf(voxel);
     if (!leaf) return nullptr;
     const openvdb::Index offset = VoxelLeaf::coordToOffset(voxel);
     if (!leaf->getValueMask().isOn(offset)) return nullptr;
@@ -121,45 +149,32 @@ class VoxelFinder {
       for (std::int32_t y = low.y(); y <= high.y(); y = (y | 7) + 1) {
         for (std::int32_t z = low.z(); z <= high.z(); z = (z | 7) + 1) {
           const VoxelIndex first(x, y, z);
-          const VoxelLeaf* leaf = accessor_.probeConstLeaf(first);
-          if (leaf)
-            for_each_in_box(*leaf, first, openvdb::math::Coord::minComponent(high, {x | 7, y | 7, z | 7}), body);
+          const VoxelLeaf* leaf = find_leaf(first);
+          if (!leaf) continue;
+          for_each_voxel_in(*leaf, first, VoxelIndex::minComponent(high, {x | 7, y | 7, z | 7}),
+                            [&](const VoxelIndex& voxel, std::size_t number) { body(voxel, records_[number]); });
         }
       }
     }
   }
 
  private:
-  // The box lies within the leaf.
-  template <typename Body>
-  void for_each_in_box(const VoxelLeaf& leaf, const VoxelIndex& low, const VoxelIndex& high, const Body& body) const {
-    const auto& mask = leaf.getValueMask();
-    const std::uint64_t row_bits = ((2u << (high.z() & 7)) - 1) & ~((1u << (low.z() & 7)) - 1);
-    const int first_layer = low.x() & 7;
-    std::size_t first_of_layer = leaf.transientData();
-    for (int i = 0; i < first_layer; ++i) first_of_layer += popcount_of_layer(mask, i);
-    for (std::int32_t x = low.x(); x <= high.x(); ++x) {
-      const std::uint64_t layer = mask.template getWord<openvdb::Index64>(static_cast<openvdb::Index>(x & 7));
-      for (std::int32_t y = low.y(); y <= high.y() && layer != 0; ++y) {
-        std::uint64_t row = layer & row_bits << (8 * (y & 7));
-        for (; row != 0; row &= row - 1) {
-          const int bit = std::countr_zero(row);
-          const auto rank = static_cast<std::size_t>(std::popcount(layer & ((std::uint64_t{1} << bit) - 1)));
-          body(VoxelIndex(x, y, (low.z() & ~7) | (bit & 7)), records_[first_of_layer + rank]);
-        }
-      }
-      first_of_layer += static_cast<std::size_t>(std::popcount(layer));
-    }
+  struct MetLeaf {
+    VoxelIndex origin{std::numeric_limits<std::int32_t>::max()};  ///< of no leaf
+    const VoxelLeaf* leaf = nullptr;
+  };
+
+  // What is around a voxel lies in a cube of 2 x 2 x 2 leaves, and each of them has a place of its own.
+  const VoxelLeaf* find_leaf(const VoxelIndex& voxel) const {
+    const VoxelIndex origin = VoxelTree::origin_of_leaf(voxel);
+    MetLeaf& met = met_[VoxelTree::place_in_cube(voxel)];
+    if (met.origin != origin) met = {origin, tree_.find_leaf(voxel)};
+    return met.leaf;
   }
 
-  template <typename Mask>
-  static std::size_t popcount_of_layer(const Mask& mask, int x) {
-    return static_cast<std::size_t>(
-        std::popcount(mask.template getWord<openvdb::Index64>(static_cast<openvdb::Index>(x))));
-  }
-
-  openvdb::tree::ValueAccessor<const VoxelTree, false> accessor_;
+  const VoxelTree& tree_;
   const VoxelRecord* records_;
+  mutable std::array<MetLeaf, 8> met_;
 };
 
 }  // namespace vdbmap

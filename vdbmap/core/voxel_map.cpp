@@ -27,8 +27,8 @@ std::size_t memory_bytes(const VoxelMap& map) {
 }
 
 std::optional<Extent> extent(const VoxelMap& map) {
-  openvdb::CoordBBox box;
-  if (map.levels.empty() || !map.finest().tree().evalActiveVoxelBoundingBox(box)) return std::nullopt;
+  if (map.levels.empty() || map.finest().size() == 0) return std::nullopt;
+  const openvdb::CoordBBox box = map.finest().tree().voxel_box();
   const double size = map.finest().voxel_size();
   return Extent{map.frame.anchor + corner_of_voxel(box.min(), size),
                 map.frame.anchor + corner_of_voxel(box.max().offsetBy(1), size)};

@@ -66,16 +66,11 @@ VoxelIndex voxel_of_corner(const VoxelMap& map, const VoxelLevel& level, const E
   return voxel_of_point(local.cwiseMax(-limit).cwiseMin(limit), per_metre);
 }
 
-// Calls body(leaf) for the leaves of the tree that touch the box, in tree order.
-template <typename Node, typename Body>
-void for_each_leaf_in(const Node& node, const openvdb::CoordBBox& box, const Body& body) {
-  for (auto child = node.cbeginChildOn(); child; ++child) {
-    if (!box.hasOverlap(child->getNodeBoundingBox())) continue;
-    if constexpr (Node::ChildNodeType::LEVEL == 0) {
-      body(*child);
-    } else {
-      for_each_leaf_in(*child, box, body);
-    }
+// Leaves are looked at one by one: at most 80 bytes of memory each.
+template <typename Body>
+void for_each_leaf_in(const VoxelTree& tree, const openvdb::CoordBBox& box, const Body& body) {
+  for (const VoxelLeaf& leaf : tree.leaves()) {
+    if (box.hasOverlap(leaf.getNodeBoundingBox())) body(leaf);
   }
 }
 
@@ -96,7 +91,7 @@ std::vector<VoxelInfo> voxels_in_box(const VoxelMap& map, const VoxelLevel& leve
   check_box(box);
   const openvdb::CoordBBox voxels(voxel_of_corner(map, level, box.min), voxel_of_corner(map, level, box.max));
   std::vector<VoxelInfo> found;
-  for_each_leaf_in(level.tree().root(), voxels, [&](const VoxelLeaf& leaf) {
+  for_each_leaf_in(level.tree(), voxels, [&](const VoxelLeaf& leaf) {
     for_each_voxel(leaf, [&](const VoxelIndex& voxel, std::size_t number) {
       if (voxels.isInside(voxel)) found.push_back(decode(map, level, voxel, number));
     });

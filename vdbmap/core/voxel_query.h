@@ -40,7 +40,7 @@ std::optional<VoxelInfo> voxel_at(const VoxelMap& map, const VoxelLevel& level, 
 std::optional<VoxelInfo> voxel_with_id(const VoxelMap& map, const VoxelLevel& level, VoxelId id);
 
 /// The voxels that share a point with the closed box [m, original system], in the order of the records. Looks into the
-/// leaves near the box only. Throws std::invalid_argument where `box.min` exceeds `box.max` or one is NaN.
+/// leaves that touch the box only. Throws std::invalid_argument where `box.min` exceeds `box.max` or one is NaN.
 std::vector<VoxelInfo> voxels_in_box(const VoxelMap& map, const VoxelLevel& level, const Extent& box);
 
 }  // namespace vdbmap

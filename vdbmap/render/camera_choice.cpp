@@ -28,10 +28,10 @@ constexpr double kMinExtent = 1;  // [m]
 
 std::vector<Eigen::Vector3d> some_voxels(const VoxelLevel& level, std::size_t most) {
   std::vector<Eigen::Vector3d> centers;
-  const std::vector<const VoxelLeaf*> leaves = level.leaves();
+  const std::span<const VoxelLeaf> leaves = level.leaves();
   const std::size_t stride = level.size() / most + 1;
   for (std::size_t i = 0; i < leaves.size(); i += stride) {
-    for_each_voxel(*leaves[i], [&](const VoxelIndex& voxel, std::size_t) {
+    for_each_voxel(leaves[i], [&](const VoxelIndex& voxel, std::size_t) {
       centers.push_back(center_of_voxel(voxel, level.voxel_size()));
     });
   }

@@ -8,17 +8,22 @@
 
 #include <openvdb/tools/Morphology.h>
 
+// OpenVDB's library holds this tree, compiled.
+extern template class openvdb::tree::Tree<openvdb::MaskTree::RootNodeType>;
+
 namespace vdbmap {
 namespace {
 
 constexpr int kLog2Leaf = VoxelLeaf::LOG2DIM;
 
-VoxelTree::Ptr leaves_and_neighbors(const VoxelLevel& level) {
-  const auto tree = std::make_shared<VoxelTree>();
-  openvdb::tree::ValueAccessor<VoxelTree> accessor(*tree);
-  for (const VoxelLeaf* leaf : level.leaves()) accessor.setValueOn(leaf->origin() >> kLog2Leaf);
-  openvdb::tools::dilateActiveValues(*tree, 1, openvdb::tools::NN_FACE_EDGE_VERTEX);
-  return tree;
+VoxelTree leaves_and_neighbors(const VoxelLevel& level) {
+  openvdb::MaskTree tree;
+  openvdb::tree::ValueAccessor<openvdb::MaskTree> accessor(tree);
+  for (const VoxelLeaf& leaf : level.leaves()) accessor.setValueOn(leaf.origin() >> kLog2Leaf);
+  openvdb::tools::dilateActiveValues(tree, 1, openvdb::tools::NN_FACE_EDGE_VERTEX);
+  LargeVector<VoxelLeaf> leaves;
+  for (auto leaf = tree.cbeginLeaf(); leaf; ++leaf) leaves.push_back(*leaf);
+  return VoxelTree(std::move(leaves));
 }
 
 double reach_of(const Camera& camera, double half_tile, double leaf_size) {
@@ -32,7 +37,7 @@ double reach_of(const Camera& camera, double half_tile, double leaf_size) {
 RayBeams::RayBeams(const VoxelLevel& level, const Camera& camera, int tile_size)
     : leaf_size_(level.voxel_size() * (1 << kLog2Leaf)),
       leaves_(leaves_and_neighbors(level)),
-      caster_(*leaves_, leaf_size_),
+      caster_(leaves_, leaf_size_),
       camera_(camera),
       half_tile_(tile_size / 2.0),
       reach_(reach_of(camera, half_tile_, leaf_size_)) {}
@@ -42,7 +47,8 @@ double RayBeams::free_distance(int left, int top) const {
   const Eigen::Vector3d begin = ray.origin / leaf_size_;
   const VoxelIndex cell(static_cast<int>(std::floor(begin.x())), static_cast<int>(std::floor(begin.y())),
                         static_cast<int>(std::floor(begin.z())));
-  if (leaves_->isValueOn(cell)) return 0;
+  const VoxelLeaf* leaf = leaves_.find_leaf(cell);
+  if (leaf && leaf->isValueOn(cell)) return 0;
   const auto hit = caster_.first_hit(ray, {0, reach_});
   return hit ? hit->distance : reach_;
 }

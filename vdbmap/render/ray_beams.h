@@ -14,13 +14,15 @@ class RayBeams {
  public:
   /// Squares of `tile_size` pixels a side.
   RayBeams(const VoxelLevel& level, const Camera& camera, int tile_size);
+  RayBeams(const RayBeams&) = delete;  // caster_ looks into leaves_
+  RayBeams& operator=(const RayBeams&) = delete;
 
   /// A distance [m] up to which no ray through the square whose upper left pixel is (left, top) meets a voxel.
   double free_distance(int left, int top) const;
 
  private:
-  double leaf_size_;       ///< [m]
-  VoxelTree::Ptr leaves_;  ///< a voxel for every leaf and each of its 26 neighbours
+  double leaf_size_;  ///< [m]
+  VoxelTree leaves_;  ///< a voxel for every leaf and each of its 26 neighbours
   RayCaster caster_;
   const Camera& camera_;
   double half_tile_;  ///< [pixels]

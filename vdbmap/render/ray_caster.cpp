@@ -8,10 +8,6 @@
 namespace vdbmap {
 namespace {
 
-using Root = VoxelTree::RootNodeType;
-using UpperNode = Root::ChildNodeType;
-using LowerNode = UpperNode::ChildNodeType;
-
 constexpr double kInfinity = std::numeric_limits<double>::infinity();
 
 /// A ray in units of voxels, with what every step needs.
@@ -101,7 +97,8 @@ struct End {
   Arrival arrival;
 };
 
-bool walk(const VoxelLeaf& leaf, const Path& path, Arrival arrival, double end, End& result) {
+bool walk(const RayNodes& /*nodes*/, const VoxelLeaf& leaf, const Path& path, Arrival arrival, double end,
+          End& result) {
   CellWalk<VoxelLeaf::LOG2DIM, 0> cells(path, leaf.origin(), arrival.distance);
   do {
     if (!leaf.getValueMask().isOn(cells.offset()) || arrival.axis < 0) continue;
@@ -112,12 +109,12 @@ bool walk(const VoxelLeaf& leaf, const Path& path, Arrival arrival, double end, 
 }
 
 template <typename Node>
-bool walk(const Node& node, const Path& path, Arrival arrival, double end, End& result) {
-  CellWalk<Node::LOG2DIM, Node::ChildNodeType::TOTAL> cells(path, node.origin(), arrival.distance);
+bool walk(const RayNodes& nodes, const Node& node, const Path& path, Arrival arrival, double end, End& result) {
+  CellWalk<Node::kLog2Dim, Node::kLog2Size> cells(path, node.origin, arrival.distance);
   do {
     const openvdb::Index offset = cells.offset();
-    if (!node.getChildMask().isOn(offset)) continue;
-    if (walk(*node.getTable()[offset].getChild(), path, arrival, end, result)) return true;
+    if (!node.children.isOn(offset)) continue;
+    if (walk(nodes, nodes.child(node, offset), path, arrival, end, result)) return true;
   } while (cells.advance(arrival, end));
   return false;
 }
@@ -156,15 +153,16 @@ int axis_of_entry(const Path& path, const openvdb::CoordBBox& box, double distan
   return entry;
 }
 
-// Cells of the root are as large as its children; there are few of them along any ray through the box.
-bool walk(const VoxelTree& tree, const openvdb::CoordBBox& box, const Path& path, const RayRange& range, End& result) {
+// There are few regions along any ray through the box.
+bool walk(const RayNodes& nodes, const Path& path, const RayRange& range, End& result) {
+  const openvdb::CoordBBox& box = nodes.box();
   if (box.empty()) return false;
   const std::optional<RayRange> inside = clip(path, box, range);
   if (!inside) return false;
   Arrival arrival{inside->begin};
   if (inside->begin > range.begin) arrival.axis = axis_of_entry(path, box, arrival.distance);
 
-  constexpr int kSize = 1 << UpperNode::TOTAL;
+  constexpr int kSize = 1 << (RayNodes::Region::kLog2Dim + RayNodes::Region::kLog2Size);
   openvdb::Coord corner;
   for (std::size_t axis = 0; axis < 3; ++axis) {
     const auto i = static_cast<int>(axis);
@@ -173,8 +171,8 @@ bool walk(const VoxelTree& tree, const openvdb::CoordBBox& box, const Path& path
     corner[i] = voxel & ~(kSize - 1);
   }
   while (true) {
-    const auto* node = tree.root().template probeConstNode<UpperNode>(corner);
-    if (node && walk(*node, path, arrival, inside->end, result)) return true;
+    const RayNodes::Region* region = nodes.find_region(corner);
+    if (region && walk(nodes, *region, path, arrival, inside->end, result)) return true;
     arrival.distance = kInfinity;
     for (std::size_t axis = 0; axis < 3; ++axis) {
       const double next = path.crossing(axis, corner[static_cast<int>(axis)] + path.ahead[axis] * kSize);
@@ -193,14 +191,12 @@ Eigen::Vector3d normal_of_face(VoxelFace face) {
   return normal;
 }
 
-RayCaster::RayCaster(const VoxelTree& tree, double voxel_size) : tree_(tree), voxel_size_(voxel_size) {
-  tree.evalLeafBoundingBox(box_);
-}
+RayCaster::RayCaster(const VoxelTree& tree, double voxel_size) : nodes_(tree), voxel_size_(voxel_size) {}
 
 std::optional<RayHit> RayCaster::first_hit(const Ray& ray, const RayRange& range) const {
   const Path path(ray, voxel_size_);
   End end;
-  if (!walk(tree_, box_, path, range, end)) return std::nullopt;
+  if (!walk(nodes_, path, range, end)) return std::nullopt;
   const auto axis = static_cast<std::size_t>(end.arrival.axis);
   RayHit hit;
   hit.voxel = end.leaf->offsetToGlobalCoord(end.offset);
@@ -212,7 +208,7 @@ std::optional<RayHit> RayCaster::first_hit(const Ray& ray, const RayRange& range
 
 bool RayCaster::is_blocked(const Ray& ray, const RayRange& range) const {
   End end;
-  return walk(tree_, box_, Path(ray, voxel_size_), range, end);
+  return walk(nodes_, Path(ray, voxel_size_), range, end);
 }
 
 }  // namespace vdbmap

@@ -9,6 +9,7 @@
 #include <Eigen/Core>
 
 #include "vdbmap/core/voxel_level.h"
+#include "vdbmap/render/ray_nodes.h"
 
 namespace vdbmap {
 
@@ -38,7 +39,7 @@ struct RayRange {
 };
 
 /// Follows rays through a tree of bit masks: empty regions are crossed in steps of whole nodes (410 m, 13 m and 0.8 m
-/// at 10 cm), only occupied leaves voxel by voxel. Keeps a reference to the tree; for any number of threads.
+/// at 10 cm), only occupied leaves voxel by voxel. Keeps a reference to the leaves; for any number of threads.
 class RayCaster {
  public:
   RayCaster(const VoxelTree& tree, double voxel_size);
@@ -52,9 +53,8 @@ class RayCaster {
   bool is_blocked(const Ray& ray, const RayRange& range) const;
 
  private:
-  const VoxelTree& tree_;
-  double voxel_size_;       ///< [m]
-  openvdb::CoordBBox box_;  ///< around all leaves; empty without one
+  RayNodes nodes_;
+  double voxel_size_;  ///< [m]
 };
 
 }  // namespace vdbmap

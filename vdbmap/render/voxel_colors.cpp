@@ -39,10 +39,10 @@ std::size_t stride_of(std::size_t size) { return size / kMaxSamples + 1; }
 // Heights of the voxels' middles in the original system.
 std::vector<double> some_heights(const VoxelMap& map, const VoxelLevel& level) {
   std::vector<double> heights;
-  const std::vector<const VoxelLeaf*> leaves = level.leaves();
+  const std::span<const VoxelLeaf> leaves = level.leaves();
   const std::size_t stride = level.size() / kMaxSamples + 1;
   for (std::size_t i = 0; i < leaves.size(); i += stride) {
-    for_each_voxel(*leaves[i], [&](const VoxelIndex& voxel, std::size_t) {
+    for_each_voxel(leaves[i], [&](const VoxelIndex& voxel, std::size_t) {
       heights.push_back(center_of_voxel(voxel, level.voxel_size()).z() + map.frame.anchor.z());
     });
   }

@@ -70,7 +70,7 @@ TEST_P(HierarchyStep, ALevelIsTheOneBuiltFromThePointsDirectly) {
   const VoxelMap one_level = map_of(cloud, {coarse_size});
   const VoxelLevel& merged = two_levels.coarsest();
   const VoxelLevel& direct = one_level.finest();
-  ASSERT_TRUE(merged.tree().hasSameTopology(direct.tree()));
+  ASSERT_TRUE(test::same_voxels(merged, direct));
   for (std::size_t i = 0; i < direct.size(); ++i) {
     EXPECT_EQ(merged.records()[i].count, direct.records()[i].count);
     for (int axis = 0; axis < 3; ++axis) {
@@ -113,15 +113,14 @@ TEST(Hierarchy, ALevelOfOnlyOneVoxelHoldsAll) {
 TEST(Hierarchy, EpochsOfAParentSpanThoseOfItsChildren) {
   const VoxelMap source =
       map_of(test::random_cloud(200, {Eigen::Vector3d(0, 0, 0), Eigen::Vector3d(1, 1, 1)}, 6), {0.1});
-  std::vector<std::unique_ptr<VoxelLeaf>> leaves;
-  for (const VoxelLeaf* leaf : source.finest().leaves()) leaves.push_back(std::make_unique<VoxelLeaf>(*leaf));
   VoxelChannels channels;
   for (std::size_t i = 0; i < source.finest().size(); ++i) {
     channels.first_epochs.push_back(static_cast<std::int32_t>(i) - 5);
     channels.last_epochs.push_back(static_cast<std::int32_t>(2 * i));
   }
   const std::span<const VoxelRecord> records = source.finest().records();
-  const VoxelLevel fine(0.1, std::move(leaves), {records.begin(), records.end()}, channels);
+  const std::span<const VoxelLeaf> leaves = source.finest().leaves();
+  const VoxelLevel fine(0.1, {leaves.begin(), leaves.end()}, {records.begin(), records.end()}, channels);
 
   const VoxelLevel coarse = coarsen(fine, 10);
   ASSERT_EQ(coarse.size(), 1U);

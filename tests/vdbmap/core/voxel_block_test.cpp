@@ -4,6 +4,7 @@
 #include <algorithm>
 
 #include <gtest/gtest.h>
+#include <openvdb/openvdb.h>
 
 #include "tests/support/random_points.h"
 #include "vdbmap/core/voxel_assembly.h"
@@ -13,7 +14,7 @@ namespace {
 
 // The voxels in the order in which OpenVDB itself walks a tree of them.
 std::vector<VoxelIndex> in_tree_order(const std::vector<VoxelIndex>& voxels) {
-  VoxelTree tree;
+  openvdb::MaskTree tree;
   for (const VoxelIndex& voxel : voxels) tree.setValueOn(voxel);
   std::vector<VoxelIndex> ordered;
   for (auto it = tree.cbeginValueOn(); it; ++it) ordered.push_back(it.getCoord());
@@ -71,6 +72,7 @@ TEST(VoxelBlock, AKeyNamesTheLeafAndThePlaceInIt) {
     const KeyInBlock key = key_in_block(voxel);
     EXPECT_EQ(origin_of_block(block_of_voxel(voxel)) + leaf_origin_in_block(key), leaf.origin());
     EXPECT_EQ(offset_in_leaf(key), VoxelLeaf::coordToOffset(voxel));
+    EXPECT_EQ(voxel_of_key(key_of_voxel(voxel)), voxel);
   }
 }
 
@@ -80,7 +82,7 @@ TEST(VoxelBlock, LeavesHoldTheVoxelsOfTheBlock) {
   for (const VoxelIndex& voxel : voxels) leaves.add(key_in_block(voxel));
   std::vector<VoxelIndex> found;
   for (const auto& leaf : leaves.take()) {
-    for (auto it = leaf->cbeginValueOn(); it; ++it) found.push_back(it.getCoord());
+    for (auto it = leaf.cbeginValueOn(); it; ++it) found.push_back(it.getCoord());
   }
   EXPECT_EQ(found, voxels);
 }

@@ -108,11 +108,11 @@ INSTANTIATE_TEST_SUITE_P(Reaches, VoxelFinderReach, testing::Values(0, 1, 2, 3, 
 
 TEST(VoxelLevel, RanksAreTheNumberOfVoxelsBefore) {
   const NumberedLevel dense = dense_level();
-  for (const VoxelLeaf* leaf : dense.level.leaves()) {
+  for (const VoxelLeaf& leaf : dense.level.leaves()) {
     std::uint32_t before = 0;
     for (openvdb::Index offset = 0; offset < VoxelLeaf::SIZE; ++offset) {
-      EXPECT_EQ(rank_in_leaf(*leaf, offset), before);
-      before += leaf->isValueOn(offset) ? 1 : 0;
+      EXPECT_EQ(rank_in_leaf(leaf, offset), before);
+      before += leaf.isValueOn(offset) ? 1 : 0;
     }
   }
 }

@@ -4,6 +4,8 @@
 #include <algorithm>
 #include <stdexcept>
 #include <string>
+#include <utility>
+#include <vector>
 
 #include "vdbmap/core/error.h"
 #include "vdbmap/io/vdb/map_grids.h"
@@ -19,19 +21,12 @@ constexpr const char* kVoxelGridName = "voxels";
 
 bool is_voxel_grid(const std::string& name) { return name.starts_with(kVoxelGridName); }
 
-void add_grid(openvdb::GridCPtrVec& grids, const openvdb::GridBase::Ptr& grid, const std::string& name,
-              const VoxelMap& map, const VoxelLevel& level) {
-  grid->setName(name);
-  grid->insertMeta(metadata_of_map(map));
-  grid->insertMeta("voxel_size", openvdb::DoubleMetadata(level.voxel_size()));
-  grids.push_back(grid);
-}
-
-void add_level(openvdb::GridCPtrVec& grids, const VoxelMap& map, const VoxelLevel& level, const SaveOptions& options) {
-  const std::string suffix = level_suffix(level.voxel_size(), &level == &map.finest());
-  add_grid(grids, make_voxel_grid(level, map.has_color), kVoxelGridName + suffix, map, level);
-  add_grid(grids, make_density_grid(level, options.density), "density" + suffix, map, level);
-  if (map.has_color) add_grid(grids, make_color_grid(level), "color" + suffix, map, level);
+// The makers keep references to what they are made of.
+void add_level(std::vector<GridMaker>& grids, const VoxelMap& map, const VoxelLevel& level,
+               const SaveOptions& options) {
+  grids.push_back([&] { return labelled(make_voxel_grid(level, map.has_color), kVoxelGridName, map, level); });
+  grids.push_back([&] { return labelled(make_density_grid(level, options.density), "density", map, level); });
+  if (map.has_color) grids.push_back([&] { return labelled(make_color_grid(level), "color", map, level); });
 }
 
 // Levels are whole multiples of each other and hold the same points.
@@ -51,7 +46,7 @@ void check_levels(const VoxelMap& map, const std::filesystem::path& path) {
 
 void save_map(const std::filesystem::path& path, const VoxelMap& map, const SaveOptions& options) {
   openvdb::initialize();
-  openvdb::GridCPtrVec grids;
+  std::vector<GridMaker> grids;
   for (const VoxelLevel& level : map.levels) add_level(grids, map, level, options);
   write_vdb(path, grids, metadata_of_map(map));
 }
@@ -66,12 +61,12 @@ bool is_map_file(const std::filesystem::path& path) {
 
 VoxelMap load_map(const std::filesystem::path& path) {
   // The fog beside the voxels takes more memory than they do, and tells nothing new.
-  const VdbContent content = read_vdb(path, is_voxel_grid);
+  VdbContent content = read_vdb(path, is_voxel_grid);
   VoxelMap map;
   map.frame = frame_of_metadata(*content.metadata, path);
   map.label_scheme = label_scheme_of_metadata(*content.metadata);
-  for (const openvdb::GridBase::Ptr& grid : content.grids) {
-    const auto voxels = openvdb::gridPtrCast<openvdb::points::PointDataGrid>(grid);
+  for (openvdb::GridBase::Ptr& grid : content.grids) {
+    const auto voxels = openvdb::gridPtrCast<openvdb::points::PointDataGrid>(std::exchange(grid, nullptr));
     if (!voxels) continue;
     ReadLevel read = read_voxel_grid(*voxels, path);
     map.has_color |= read.has_color;

@@ -20,9 +20,7 @@ openvdb::math::Transform::Ptr transform_of_level(double voxel_size) {
 }
 
 openvdb::FloatGrid::Ptr make_density_grid(const VoxelLevel& level, float density) {
-  const auto tree = std::make_shared<openvdb::FloatTree>(level.tree(), 0.0f, density, openvdb::TopologyCopy());
-  auto grid = openvdb::FloatGrid::create(tree);
-  grid->setTransform(transform_of_level(level.voxel_size()));
+  const auto grid = make_channel_grid<openvdb::FloatGrid>(level, [&](std::size_t /*number*/) { return density; });
   grid->setGridClass(openvdb::GRID_FOG_VOLUME);
   grid->setSaveFloatAsHalf(true);
   return grid;

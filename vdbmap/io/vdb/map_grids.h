@@ -2,6 +2,7 @@
 #pragma once
 
 #include <memory>
+#include <span>
 #include <string>
 #include <vector>
 
@@ -21,20 +22,24 @@ openvdb::math::Transform::Ptr transform_of_level(double voxel_size);
 /// A grid over all voxels of the level with the values that value_of(record number) gives.
 template <typename Grid, typename ValueOf>
 typename Grid::Ptr make_channel_grid(const VoxelLevel& level, const ValueOf& value_of) {
-  using Tree = typename Grid::TreeType;
-  const auto tree =
-      std::make_shared<Tree>(level.tree(), openvdb::zeroVal<typename Tree::ValueType>(), openvdb::TopologyCopy());
-  std::vector<typename Tree::LeafNodeType*> targets;
-  tree->getNodes(targets);
-  const std::vector<const VoxelLeaf*> sources = level.leaves();
+  using Leaf = typename Grid::TreeType::LeafNodeType;
+  const auto background = openvdb::zeroVal<typename Grid::ValueType>();
+  const std::span<const VoxelLeaf> sources = level.leaves();
+  std::vector<std::unique_ptr<Leaf>> leaves(sources.size());
   parallel_for(
       sources.size(),
       [&](std::size_t i) {
-        for_each_voxel(*sources[i], [&](const VoxelIndex& voxel, std::size_t number) {
-          targets[i]->setValueOnly(voxel, value_of(number));
+        leaves[i] = std::make_unique<Leaf>(sources[i].origin(), background);
+        leaves[i]->setValueMask(sources[i].getValueMask());
+        for_each_voxel(sources[i], [&](const VoxelIndex& voxel, std::size_t number) {
+          leaves[i]->setValueOnly(voxel, value_of(number));
         });
       },
       64);
+
+  const auto tree = std::make_shared<typename Grid::TreeType>(background);
+  openvdb::tree::ValueAccessor<typename Grid::TreeType> accessor(*tree);
+  for (std::unique_ptr<Leaf>& leaf : leaves) accessor.addLeaf(leaf.release());
   auto grid = Grid::create(tree);
   grid->setTransform(transform_of_level(level.voxel_size()));
   return grid;

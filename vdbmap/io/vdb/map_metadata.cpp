@@ -7,6 +7,7 @@
 #include <string>
 
 #include "vdbmap/core/error.h"
+#include "vdbmap/io/vdb/map_grids.h"
 
 namespace vdbmap {
 namespace {
@@ -31,6 +32,14 @@ openvdb::MetaMap metadata_of_map(const VoxelMap& map) {
     metadata.insertMeta(kLabelSchemeName, openvdb::StringMetadata(std::string(text_of(map.label_scheme))));
   }
   return metadata;
+}
+
+openvdb::GridBase::Ptr labelled(openvdb::GridBase::Ptr grid, const std::string& channel, const VoxelMap& map,
+                                const VoxelLevel& level) {
+  grid->setName(channel + level_suffix(level.voxel_size(), &level == &map.finest()));
+  grid->insertMeta(metadata_of_map(map));
+  grid->insertMeta("voxel_size", openvdb::DoubleMetadata(level.voxel_size()));
+  return grid;
 }
 
 MapFrame frame_of_metadata(const openvdb::MetaMap& metadata, const std::filesystem::path& path) {

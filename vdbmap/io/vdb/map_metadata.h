@@ -2,6 +2,7 @@
 #pragma once
 
 #include <filesystem>
+#include <string>
 
 #include "vdbmap/core/voxel_map.h"
 #include "vdbmap/io/vdb/standard_grids.h"
@@ -13,6 +14,10 @@ inline constexpr std::int32_t kMapFormat = 2;
 
 /// Anchor, EPSG code, label scheme, format and creator, as metadata of a file or a grid.
 openvdb::MetaMap metadata_of_map(const VoxelMap& map);
+
+/// A grid of a level with the name of its channel, that of the level behind it, and the metadata of the map.
+openvdb::GridBase::Ptr labelled(openvdb::GridBase::Ptr grid, const std::string& channel, const VoxelMap& map,
+                                const VoxelLevel& level);
 
 /// Reads anchor and EPSG code. Throws IoError where `metadata` is not of a map, or of a newer format.
 MapFrame frame_of_metadata(const openvdb::MetaMap& metadata, const std::filesystem::path& path);

@@ -7,6 +7,7 @@
 #include <fstream>
 #include <string>
 
+#include <openvdb/io/GridDescriptor.h>
 #include <xxhash.h>
 
 #include "vdbmap/core/error.h"
@@ -27,6 +28,25 @@ class SeekableArchive : public openvdb::io::Archive {
  public:
   void write_to(std::ostream& stream, const openvdb::GridCPtrVec& grids, const openvdb::MetaMap& metadata) const {
     Archive::write(stream, grids, /*seekable=*/true, metadata);
+  }
+
+  // What Archive::write() does, grid by grid.
+  void write_to(std::ostream& stream, const std::vector<GridMaker>& grids, const openvdb::MetaMap& metadata) const {
+    openvdb::io::StreamMetadata::Ptr stream_metadata(new openvdb::io::StreamMetadata);
+    openvdb::io::setStreamMetadataPtr(stream, stream_metadata, /*transfer=*/false);
+    openvdb::io::setDataCompression(stream, compression());
+    openvdb::io::setWriteGridStatsMetadata(stream, isGridStatsMetadataEnabled());
+    writeHeader(stream, /*seekable=*/true);
+    metadata.writeMeta(stream);
+    const auto count = static_cast<std::int32_t>(grids.size());
+    stream.write(reinterpret_cast<const char*>(&count), sizeof(count));
+    for (const GridMaker& make : grids) {
+      const openvdb::GridBase::ConstPtr grid = make();
+      openvdb::io::GridDescriptor descriptor(grid->getName(), grid->type(), grid->saveFloatAsHalf());
+      writeGrid(descriptor, grid, stream, /*seekable=*/true);
+      openvdb::io::setDataCompression(stream, compression());  // the grid may have set its own
+    }
+    openvdb::io::clearStreamMetadataPtr(stream);
   }
 };
 
@@ -67,8 +87,8 @@ std::string id_of_content(const std::filesystem::path& path) {
   return id.data();
 }
 
-void write_grids(const std::filesystem::path& path, const openvdb::GridCPtrVec& grids,
-                 const openvdb::MetaMap& metadata) {
+template <typename Grids>
+void write_grids(const std::filesystem::path& path, const Grids& grids, const openvdb::MetaMap& metadata) {
   SeekableArchive archive;
   archive.setCompression(openvdb::io::COMPRESS_ACTIVE_MASK | openvdb::io::COMPRESS_BLOSC);
   std::ofstream stream(path, std::ios::binary | std::ios::trunc);
@@ -123,7 +143,10 @@ VdbContent read_vdb(const std::filesystem::path& path, const GridFilter& is_want
   }
 }
 
-void write_vdb(const std::filesystem::path& path, const openvdb::GridCPtrVec& grids, const openvdb::MetaMap& metadata) {
+namespace {
+
+template <typename Grids>
+void write_atomically(const std::filesystem::path& path, const Grids& grids, const openvdb::MetaMap& metadata) {
   openvdb::initialize();
   AtomicFile target(path);
   try {
@@ -135,6 +158,17 @@ void write_vdb(const std::filesystem::path& path, const openvdb::GridCPtrVec& gr
     throw IoError::system(path, std::string("cannot write (") + error.what() + ")", errno);
   }
   target.commit();
+}
+
+}  // namespace
+
+void write_vdb(const std::filesystem::path& path, const openvdb::GridCPtrVec& grids, const openvdb::MetaMap& metadata) {
+  write_atomically(path, grids, metadata);
+}
+
+void write_vdb(const std::filesystem::path& path, const std::vector<GridMaker>& grids,
+               const openvdb::MetaMap& metadata) {
+  write_atomically(path, grids, metadata);
 }
 
 }  // namespace vdbmap

@@ -4,6 +4,7 @@
 #include <filesystem>
 #include <functional>
 #include <string>
+#include <vector>
 
 #include "vdbmap/io/vdb/standard_grids.h"
 
@@ -25,5 +26,13 @@ VdbContent read_vdb(const std::filesystem::path& path, const GridFilter& is_want
 /// Writes grids atomically, compressed as Houdini does (active values, Blosc). Equal content gives equal bytes: the
 /// random id that OpenVDB puts into every file is replaced by a checksum of the rest. Throws IoError.
 void write_vdb(const std::filesystem::path& path, const openvdb::GridCPtrVec& grids, const openvdb::MetaMap& metadata);
+
+/// Makes a grid of a file.
+using GridMaker = std::function<openvdb::GridBase::ConstPtr()>;
+
+/// Writes the same file, but makes each grid when its turn comes and frees it before the next: the grids of a level of
+/// scattered points take a hundred times as much memory as the level. Names of grids must differ.
+void write_vdb(const std::filesystem::path& path, const std::vector<GridMaker>& grids,
+               const openvdb::MetaMap& metadata);
 
 }  // namespace vdbmap

@@ -59,7 +59,7 @@ std::vector<PlacedVoxel> place_voxels(const VoxelLevel& level, const VoxelIndex&
   for (int x = 0; x < kFineLeavesPerAxis; ++x) {
     for (int y = 0; y < kFineLeavesPerAxis; ++y) {
       for (int z = 0; z < kFineLeavesPerAxis; ++z) {
-        const VoxelLeaf* leaf = level.tree().probeConstLeaf(first.offsetBy(8 * x, 8 * y, 8 * z));
+        const VoxelLeaf* leaf = level.tree().find_leaf(first.offsetBy(8 * x, 8 * y, 8 * z));
         if (!leaf) continue;
         for_each_voxel(*leaf, [&](const VoxelIndex& voxel, std::size_t number) {
           placed.push_back(place_voxel(voxel, leaf_of_cells, level.records()[number], number));
