@@ -20,7 +20,7 @@ openvdb::math::Transform::Ptr transform_of_level(double voxel_size) {
 }
 
 openvdb::FloatGrid::Ptr make_density_grid(const VoxelLevel& level, float density) {
-  const auto grid = make_channel_grid<openvdb::FloatGrid>(level, [&](std::size_t /*number*/) { return density; });
+  const auto grid = make_channel_grid<openvdb::FloatGrid>(level, [density](std::size_t /*number*/) { return density; });
   grid->setGridClass(openvdb::GRID_FOG_VOLUME);
   grid->setSaveFloatAsHalf(true);
   return grid;

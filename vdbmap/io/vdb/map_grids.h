@@ -2,13 +2,11 @@
 #pragma once
 
 #include <memory>
-#include <span>
 #include <string>
-#include <vector>
 
-#include "vdbmap/core/parallel.h"
 #include "vdbmap/core/voxel_level.h"
 #include "vdbmap/io/vdb/standard_grids.h"
+#include "vdbmap/io/vdb/streamed_grid.h"
 
 /// Grids that every reader of .vdb files understands, one value a voxel.
 namespace vdbmap {
@@ -19,28 +17,11 @@ std::string level_suffix(double voxel_size, bool is_finest);
 /// The transform of a level's grids: voxel (i,j,k) covers [i s, (i+1) s), so OpenVDB's cell centres are shifted by s/2.
 openvdb::math::Transform::Ptr transform_of_level(double voxel_size);
 
-/// A grid over all voxels of the level with the values that value_of(record number) gives.
+/// A grid over all voxels of the level with the values that value_of(record number) gives. It can only be written, and
+/// keeps a reference to the level.
 template <typename Grid, typename ValueOf>
 typename Grid::Ptr make_channel_grid(const VoxelLevel& level, const ValueOf& value_of) {
-  using Leaf = typename Grid::TreeType::LeafNodeType;
-  const auto background = openvdb::zeroVal<typename Grid::ValueType>();
-  const std::span<const VoxelLeaf> sources = level.leaves();
-  std::vector<std::unique_ptr<Leaf>> leaves(sources.size());
-  parallel_for(
-      sources.size(),
-      [&](std::size_t i) {
-        leaves[i] = std::make_unique<Leaf>(sources[i].origin(), background);
-        leaves[i]->setValueMask(sources[i].getValueMask());
-        for_each_voxel(sources[i], [&](const VoxelIndex& voxel, std::size_t number) {
-          leaves[i]->setValueOnly(voxel, value_of(number));
-        });
-      },
-      64);
-
-  const auto tree = std::make_shared<typename Grid::TreeType>(background);
-  openvdb::tree::ValueAccessor<typename Grid::TreeType> accessor(*tree);
-  for (std::unique_ptr<Leaf>& leaf : leaves) accessor.addLeaf(leaf.release());
-  auto grid = Grid::create(tree);
+  auto grid = std::make_shared<StreamedGrid<Grid>>(level, value_of);
   grid->setTransform(transform_of_level(level.voxel_size()));
   return grid;
 }

@@ -30,8 +30,8 @@ void write_vdb(const std::filesystem::path& path, const openvdb::GridCPtrVec& gr
 /// Makes a grid of a file.
 using GridMaker = std::function<openvdb::GridBase::ConstPtr()>;
 
-/// Writes the same file, but makes each grid when its turn comes and frees it before the next: the grids of a level of
-/// scattered points take a hundred times as much memory as the level. Names of grids must differ.
+/// Writes the same file, but makes each grid when its turn comes and frees it before the next: grids take
+/// many times as much memory as the level they are made of. Names of grids must differ.
 void write_vdb(const std::filesystem::path& path, const std::vector<GridMaker>& grids,
                const openvdb::MetaMap& metadata);
 

@@ -3,6 +3,7 @@
 #include <array>
 #include <memory>
 
+#include "vdbmap/core/parallel.h"
 #include "vdbmap/io/vdb/map_grids.h"
 #include "vdbmap/io/vdb/voxel_attributes.h"
 #include "vdbmap/io/vdb/voxel_grid.h"
