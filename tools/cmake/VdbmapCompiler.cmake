@@ -5,8 +5,11 @@ if(VDBMAP_WARNINGS_AS_ERRORS)
   target_compile_options(vdbmap_compiler INTERFACE -Werror)
 endif()
 if(VDBMAP_MARCH AND CMAKE_SYSTEM_PROCESSOR MATCHES "x86_64|AMD64")
-  target_compile_options(vdbmap_compiler INTERFACE -march=${VDBMAP_MARCH})
+  # A target with the property is compiled for any x86-64 processor.
+  target_compile_options(vdbmap_compiler INTERFACE $<IF:$<BOOL:$<TARGET_PROPERTY:VDBMAP_PLAIN>>,-march=x86-64,-march=${VDBMAP_MARCH}>)
 endif()
+# A product and a sum are rounded one after the other, on every processor alike: the same input gives the same bytes.
+target_compile_options(vdbmap_compiler INTERFACE $<$<CXX_COMPILER_ID:GNU,Clang,AppleClang>:-ffp-contract=off>)
 if(VDBMAP_SANITIZE)
   # Undefined behaviour is looked for in what is tested: in the macros of the tests that would take half of their compilation.
   string(REPLACE "," ";" sanitizers ${VDBMAP_SANITIZE})

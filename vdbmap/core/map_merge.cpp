@@ -13,6 +13,7 @@
 #include "vdbmap/core/hierarchy.h"
 #include "vdbmap/core/label_votes.h"
 #include "vdbmap/core/normals.h"
+#include "vdbmap/core/plain_format.h"
 #include "vdbmap/core/voxel_assembly.h"
 
 namespace vdbmap {
@@ -64,14 +65,11 @@ LabelScheme merged_scheme(const VoxelMap& a, const VoxelMap& b) {
                               std::string(text_of(b.label_scheme)) + " cannot be merged");
 }
 
-// Eigen pads the numbers of a row to columns.
-const Eigen::IOFormat kPlain(Eigen::StreamPrecision, Eigen::DontAlignCols, " ", " ");
-
 [[noreturn]] void throw_unreachable(const MapFrame& from, const MapFrame& to, double voxel_size) {
   std::ostringstream message;
   message.precision(12);
-  message << "a voxel of the map with anchor " << from.anchor.transpose().format(kPlain) << " is more than "
-          << kIndexLimit * voxel_size << " m from the anchor " << to.anchor.transpose().format(kPlain)
+  message << "a voxel of the map with anchor " << from.anchor.transpose().format(kPlainFormat) << " is more than "
+          << kIndexLimit * voxel_size << " m from the anchor " << to.anchor.transpose().format(kPlainFormat)
           << ", the farthest that voxel ids reach";
   throw std::out_of_range(message.str());
 }

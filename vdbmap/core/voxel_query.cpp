@@ -4,6 +4,7 @@
 #include <sstream>
 #include <stdexcept>
 
+#include "vdbmap/core/plain_format.h"
 #include "vdbmap/core/srgb.h"
 
 namespace vdbmap {
@@ -46,14 +47,12 @@ std::optional<VoxelInfo> find_voxel(const VoxelMap& map, const VoxelLevel& level
   return decode(map, level, voxel, static_cast<std::size_t>(record - level.records().data()));
 }
 
-// Eigen pads the numbers of a row to columns.
-const Eigen::IOFormat kPlain(Eigen::StreamPrecision, Eigen::DontAlignCols, " ", " ");
-
 void check_box(const Extent& box) {
   if ((box.min.array() <= box.max.array()).all()) return;
   std::ostringstream message;
   message.precision(12);
-  message << "box from " << box.min.transpose().format(kPlain) << " to " << box.max.transpose().format(kPlain)
+  message << "box from " << box.min.transpose().format(kPlainFormat) << " to "
+          << box.max.transpose().format(kPlainFormat)
           << ", expected no coordinate of the first corner above the second's";
   throw std::invalid_argument(message.str());
 }
