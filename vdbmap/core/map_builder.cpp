@@ -2,9 +2,11 @@
 #include "vdbmap/core/map_builder.h"
 
 #include <algorithm>
+#include <sstream>
 #include <stdexcept>
 #include <utility>
 
+#include "vdbmap/core/anchor_choice.h"
 #include "vdbmap/core/finest_level.h"
 #include "vdbmap/core/hierarchy.h"
 #include "vdbmap/core/normals.h"
@@ -19,20 +21,29 @@ constexpr std::size_t kChunkSize = std::size_t{1} << 23;
 }  // namespace
 
 struct MapBuilder::State {
+  explicit State(BuildOptions build_options)
+      : options(std::move(build_options)),
+        voxels_per_metre(vdbmap::voxels_per_metre(options.voxel_sizes.front())),
+        anchor(options.anchor) {}
+
   BuildOptions options;
-  double voxels_per_metre = 0;
-  std::optional<Eigen::Vector3d> anchor;  // from the options, else chosen by the first point
+  double voxels_per_metre;
+  std::optional<Eigen::Vector3d> anchor;  // from the options, else chosen for the first cloud
   VoxelBlocks blocks;
   std::size_t num_points = 0;
   bool has_color = false;
   bool has_intensity = false;
   bool has_labels = false;
 
-  void note(const PointCloud& cloud, const Eigen::Isometry3d& map_from_cloud);
+  UnreachablePoints unreachable;  // of the last cloud
+
+  void begin(const PointCloud& cloud, const Eigen::Isometry3d& map_from_cloud);
   SortedPoints sort(const PointCloud& cloud, std::size_t begin, std::size_t end,
-                    const Eigen::Isometry3d& map_from_cloud) const;
+                    const Eigen::Isometry3d& map_from_cloud);
+  void check_reached(const PointCloud& cloud) const;
   void add_up_to(std::size_t end, const PointCloud& cloud, const Eigen::Isometry3d& map_from_cloud);
   VoxelMap make_map(std::optional<SortedPoints> last_points);
+  VoxelMap make_map_and_begin_anew(std::optional<SortedPoints> last_points);
 };
 
 void BuildOptions::check() const {
@@ -45,11 +56,9 @@ void BuildOptions::check() const {
   if (anchor) check_anchor(*anchor);
 }
 
-MapBuilder::MapBuilder(BuildOptions options) : state_(std::make_unique<State>()) {
+MapBuilder::MapBuilder(BuildOptions options) {
   options.check();
-  state_->voxels_per_metre = voxels_per_metre(options.voxel_sizes.front());
-  state_->anchor = options.anchor;
-  state_->options = std::move(options);
+  state_ = std::make_unique<State>(std::move(options));
 }
 
 MapBuilder::~MapBuilder() = default;
@@ -58,19 +67,37 @@ MapBuilder& MapBuilder::operator=(MapBuilder&&) noexcept = default;
 
 std::size_t MapBuilder::num_points() const { return state_->num_points; }
 
-void MapBuilder::State::note(const PointCloud& cloud, const Eigen::Isometry3d& map_from_cloud) {
-  if (!anchor) anchor = choose_anchor(map_from_cloud * cloud.positions.front());
-  num_points += cloud.size();
+const UnreachablePoints& MapBuilder::unreachable() const { return state_->unreachable; }
+
+void MapBuilder::State::begin(const PointCloud& cloud, const Eigen::Isometry3d& map_from_cloud) {
+  unreachable = {0, Eigen::Vector3d::Zero(), kIndexLimit / voxels_per_metre};
+  if (!anchor) anchor = anchor_for(cloud, map_from_cloud, voxels_per_metre);
   has_color |= !cloud.colors.empty();
   has_intensity |= !cloud.intensities.empty();
   has_labels |= !cloud.labels.empty();
 }
 
 SortedPoints MapBuilder::State::sort(const PointCloud& cloud, std::size_t begin, std::size_t end,
-                                     const Eigen::Isometry3d& map_from_cloud) const {
+                                     const Eigen::Isometry3d& map_from_cloud) {
   Eigen::Isometry3d local_from_cloud = map_from_cloud;
   local_from_cloud.translation() -= *anchor;
-  return {cloud, begin, end, local_from_cloud, voxels_per_metre};
+  SortedPoints sorted(cloud, begin, end, local_from_cloud, voxels_per_metre);
+  if (unreachable.count == 0) unreachable.first = cloud.positions[sorted.first_unreachable()];
+  unreachable.count += sorted.num_unreachable();
+  num_points += end - begin - sorted.num_unreachable();
+  return sorted;
+}
+
+// Most of a cloud lies elsewhere: that is no stray point, but another place or another unit.
+void MapBuilder::State::check_reached(const PointCloud& cloud) const {
+  if (2 * unreachable.count < cloud.size() || unreachable.count == 0) return;
+  const Eigen::Vector3d& point = unreachable.first;
+  std::ostringstream message;
+  message.precision(10);
+  message << "point " << point.x() << ", " << point.y() << ", " << point.z() << " is more than " << unreachable.reach
+          << " m from the anchor, the farthest that voxel ids reach";
+  if (cloud.size() > 1) message << ", as are " << unreachable.count << " of " << cloud.size() << " points";
+  throw std::out_of_range(message.str());
 }
 
 // Adds the points before `end`, chunk by chunk.
@@ -81,9 +108,11 @@ void MapBuilder::State::add_up_to(std::size_t end, const PointCloud& cloud, cons
 }
 
 void MapBuilder::add(const PointCloud& cloud, const Eigen::Isometry3d& map_from_cloud) {
+  state_->unreachable = {};
   if (cloud.empty()) return;
-  state_->note(cloud, map_from_cloud);
+  state_->begin(cloud, map_from_cloud);
   state_->add_up_to(cloud.size(), cloud, map_from_cloud);
+  state_->check_reached(cloud);
 }
 
 VoxelMap MapBuilder::State::make_map(std::optional<SortedPoints> last_points) {
@@ -99,20 +128,25 @@ VoxelMap MapBuilder::State::make_map(std::optional<SortedPoints> last_points) {
   return map;
 }
 
-VoxelMap MapBuilder::finish() {
-  VoxelMap map = state_->make_map(std::nullopt);
-  *this = MapBuilder(state_->options);
+VoxelMap MapBuilder::State::make_map_and_begin_anew(std::optional<SortedPoints> last_points) {
+  VoxelMap map = make_map(std::move(last_points));
+  const UnreachablePoints of_last_cloud = unreachable;
+  *this = State(std::move(options));
+  unreachable = of_last_cloud;
   return map;
 }
 
+VoxelMap MapBuilder::finish() { return state_->make_map_and_begin_anew(std::nullopt); }
+
 VoxelMap MapBuilder::finish(const PointCloud& last_cloud, const Eigen::Isometry3d& map_from_cloud) {
+  state_->unreachable = {};
   if (last_cloud.empty()) return finish();
-  state_->note(last_cloud, map_from_cloud);
+  state_->begin(last_cloud, map_from_cloud);
   const std::size_t last_chunk = (last_cloud.size() - 1) / kChunkSize * kChunkSize;
   state_->add_up_to(last_chunk, last_cloud, map_from_cloud);
-  VoxelMap map = state_->make_map(state_->sort(last_cloud, last_chunk, last_cloud.size(), map_from_cloud));
-  *this = MapBuilder(state_->options);
-  return map;
+  SortedPoints last_points = state_->sort(last_cloud, last_chunk, last_cloud.size(), map_from_cloud);
+  state_->check_reached(last_cloud);
+  return state_->make_map_and_begin_anew(std::move(last_points));
 }
 
 VoxelMap build_map(const PointCloud& cloud, const BuildOptions& options) { return MapBuilder(options).finish(cloud); }

@@ -17,7 +17,7 @@ namespace vdbmap {
 /// How a map is built.
 struct BuildOptions {
   std::vector<double> voxel_sizes = {0.1, 1.0};  ///< [m] finest first, each a whole multiple of the one before
-  std::optional<Eigen::Vector3d> anchor;         ///< default: choose_anchor() of the first point
+  std::optional<Eigen::Vector3d> anchor;         ///< default: anchor_for() the first cloud
   std::optional<int> epsg;                       ///< of the points' coordinates
   std::optional<std::int32_t> epoch;             ///< stored as first and last epoch of every voxel
 
@@ -25,9 +25,16 @@ struct BuildOptions {
   void check() const;
 };
 
+/// Points of a cloud that voxel ids do not reach from the anchor: they are no part of the map.
+struct UnreachablePoints {
+  std::size_t count = 0;
+  Eigen::Vector3d first = Eigen::Vector3d::Zero();  ///< where the first of them lies, as the cloud says
+  double reach = 0;                                 ///< [m] from the anchor on each axis, as far as ids reach
+};
+
 /// Collects points and makes a map of them. Memory grows with the voxels, not with the points. The map is the same, bit
 /// for bit, for any order of the points, any cut into calls and any number of threads, as long as the anchor is the
-/// same: one that is not given depends on the very first point.
+/// same: one that is not given depends on the first cloud, and there mostly on the first point.
 class MapBuilder {
  public:
   /// Throws std::invalid_argument for bad options.
@@ -36,9 +43,13 @@ class MapBuilder {
   MapBuilder(MapBuilder&&) noexcept;
   MapBuilder& operator=(MapBuilder&&) noexcept;
 
-  /// Adds the points of a cloud moved by `map_from_cloud` (original system). Throws std::out_of_range for a point
-  /// whose voxel index does not fit 21 bits, naming the point; the builder is then unusable.
+  /// Adds the points of a cloud moved by `map_from_cloud` (original system). A point whose voxel index does not fit 21
+  /// bits is left out. Throws std::out_of_range, naming the first one, where that is half of the cloud or more; the
+  /// builder is then unusable.
   void add(const PointCloud& cloud, const Eigen::Isometry3d& map_from_cloud = Eigen::Isometry3d::Identity());
+
+  /// What was left out of the cloud that was given last, to add() or to finish().
+  const UnreachablePoints& unreachable() const;
 
   /// Number of points added.
   std::size_t num_points() const;

@@ -4,12 +4,12 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <sstream>
-#include <stdexcept>
+#include <optional>
 #include <unordered_map>
 #include <utility>
 
 #include "vdbmap/core/parallel.h"
+#include "vdbmap/core/point_cell.h"
 #include "vdbmap/core/srgb.h"
 
 namespace vdbmap {
@@ -19,64 +19,41 @@ constexpr std::size_t kRangeSize = 1 << 14;  // points that one task numbers and
 
 // Number of a block within a range, which has no more blocks than points.
 using BlockInRange = std::uint16_t;
-static_assert(kRangeSize <= std::size_t{1} << 16);
+constexpr BlockInRange kNowhere = 0xffff;  // of a point that is not addressable
+static_assert(kRangeSize < kNowhere);
 
 // Where the points of one range go: its blocks in order of appearance, and how many points each gets.
 struct RangeBlocks {
   std::vector<BlockKey> blocks;
   std::vector<std::uint32_t> counts;
-  std::vector<std::uint32_t> targets;  // place of each block's first point in the sorted array
+  std::vector<std::uint32_t> targets;      // place of each block's first point in the sorted array
+  std::vector<std::uint32_t> unreachable;  // points of the range that are not addressable
 };
 
-// Moves points into the scaled local frame, in which voxels have edge 1.
-struct Scaler {
-  Eigen::Matrix3d rotation;
-  Eigen::Vector3d translation;
-
-  Scaler(const Eigen::Isometry3d& local_from_cloud, double voxels_per_metre)
-      : rotation(local_from_cloud.linear() * voxels_per_metre),
-        translation(local_from_cloud.translation() * voxels_per_metre) {}
-
-  Eigen::Array3d operator()(const Eigen::Vector3d& point) const { return rotation * point + translation; }
-};
-
-[[noreturn]] void throw_unaddressable(const Eigen::Vector3d& point, double voxels_per_metre) {
-  std::ostringstream message;
-  message.precision(10);
-  message << "point " << point.x() << ", " << point.y() << ", " << point.z() << " is more than "
-          << kIndexLimit / voxels_per_metre << " m from the anchor, the farthest that voxel ids reach";
-  throw std::out_of_range(message.str());
-}
-
-VoxelIndex voxel_of_scaled(const Eigen::Array3d& scaled) {
-  return {static_cast<std::int32_t>(std::floor(scaled.x())), static_cast<std::int32_t>(std::floor(scaled.y())),
-          static_cast<std::int32_t>(std::floor(scaled.z()))};
-}
-
-KeyedPoint keyed_point(const Eigen::Array3d& scaled, std::uint32_t source) {
-  const VoxelIndex voxel = voxel_of_scaled(scaled);
-  KeyedPoint point{key_in_block(voxel), source, {}};
+KeyedPoint keyed_point(const PointCell& cell, std::uint32_t source) {
+  KeyedPoint point{key_in_block(cell.voxel), source, {}};
   for (int axis = 0; axis < 3; ++axis) {
-    const double share = scaled[axis] - voxel[axis];  // [0, 1]: a hair below 0 lies in voxel -1, and rounds to its end
-    const auto quantum = std::min(static_cast<std::int32_t>(share * kQuantaPerVoxel), 65535);
+    const auto quantum = std::min(static_cast<std::int32_t>(cell.share[axis] * kQuantaPerVoxel), 65535);
     point.quantum[axis] = static_cast<std::int16_t>(quantum - 32768);
   }
   return point;
 }
 
-// Numbers the blocks of one range; `block_in_range` receives the number of each point's block.
-RangeBlocks number_blocks(std::span<const Eigen::Vector3d> points, const Scaler& scale, double voxels_per_metre,
+// Numbers the blocks of one range; `block_in_range` receives the number of each point's block, or kNowhere.
+RangeBlocks number_blocks(std::span<const Eigen::Vector3d> points, const CellFinder& cells,
                           BlockInRange* block_in_range) {
   RangeBlocks range;
   std::unordered_map<std::uint64_t, std::uint32_t> numbers;
   auto last_block = BlockKey{~std::uint64_t{0}};
   std::uint32_t last_number = 0;
-  for (const Eigen::Vector3d& point : points) {
-    const Eigen::Array3d scaled = scale(point);
-    const bool addressable = (scaled >= -kIndexLimit).all() && (scaled < kIndexLimit).all();
-    if (!addressable) throw_unaddressable(point, voxels_per_metre);
-
-    const BlockKey block = block_of_voxel(voxel_of_scaled(scaled));
+  for (std::size_t i = 0; i < points.size(); ++i) {
+    const std::optional<PointCell> cell = cells.find(points[i]);
+    if (!cell) {
+      block_in_range[i] = kNowhere;
+      range.unreachable.push_back(static_cast<std::uint32_t>(i));
+      continue;
+    }
+    const BlockKey block = block_of_voxel(cell->voxel);
     if (block != last_block) {
       last_block = block;
       const auto next = static_cast<std::uint32_t>(range.blocks.size());
@@ -88,7 +65,7 @@ RangeBlocks number_blocks(std::span<const Eigen::Vector3d> points, const Scaler&
       }
     }
     ++range.counts[last_number];
-    *block_in_range++ = static_cast<BlockInRange>(last_number);
+    block_in_range[i] = static_cast<BlockInRange>(last_number);
   }
   return range;
 }
@@ -192,9 +169,9 @@ void add_color(VoxelSums& sums, const Rgb16& color, std::span<const std::uint16_
 
 SortedPoints::SortedPoints(const PointCloud& cloud, std::size_t begin, std::size_t end,
                            const Eigen::Isometry3d& local_from_cloud, double voxels_per_metre)
-    : cloud_(cloud), begin_(begin), points_(end - begin) {
+    : cloud_(cloud), begin_(begin) {
   const std::span points = std::span(cloud.positions).subspan(begin, end - begin);
-  const Scaler scale(local_from_cloud, voxels_per_metre);
+  const CellFinder cells(local_from_cloud, voxels_per_metre);
   const auto range_of = [&](std::size_t i) {
     return points.subspan(i * kRangeSize, std::min(kRangeSize, points.size() - i * kRangeSize));
   };
@@ -202,18 +179,25 @@ SortedPoints::SortedPoints(const PointCloud& cloud, std::size_t begin, std::size
   std::vector<RangeBlocks> ranges((points.size() + kRangeSize - 1) / kRangeSize);
   LargeVector<BlockInRange> block_in_range(points.size());
   parallel_for(ranges.size(), [&](std::size_t i) {
-    ranges[i] = number_blocks(range_of(i), scale, voxels_per_metre, block_in_range.data() + i * kRangeSize);
+    ranges[i] = number_blocks(range_of(i), cells, block_in_range.data() + i * kRangeSize);
   });
+  for (std::size_t i = ranges.size(); i-- > 0;) {
+    if (ranges[i].unreachable.empty()) continue;
+    num_unreachable_ += ranges[i].unreachable.size();
+    first_unreachable_ = begin + i * kRangeSize + ranges[i].unreachable.front();
+  }
   BlockLayout layout = lay_out_blocks(ranges);
   blocks_ = std::move(layout.blocks);
   first_point_ = std::move(layout.first_point);
 
+  points_.resize(first_point_.back());
   parallel_for(ranges.size(), [&](std::size_t i) {
-    std::size_t source = i * kRangeSize;
-    for (const Eigen::Vector3d& point : range_of(i)) {
+    const std::span<const Eigen::Vector3d> range = range_of(i);
+    for (std::size_t j = 0; j < range.size(); ++j) {
+      const std::size_t source = i * kRangeSize + j;
+      if (block_in_range[source] == kNowhere) continue;
       points_[ranges[i].targets[block_in_range[source]]++] =
-          keyed_point(scale(point), static_cast<std::uint32_t>(source));
-      ++source;
+          keyed_point(*cells.find(range[j]), static_cast<std::uint32_t>(source));
     }
   });
   sort_voxels();

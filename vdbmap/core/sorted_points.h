@@ -29,9 +29,13 @@ struct KeyedPoint {
 /// scan touches), then every block is sorted by voxel on its own, in cache, blocks in parallel.
 class SortedPoints {
  public:
-  /// Of the points [begin, end). Throws std::out_of_range for a point that is not addressable.
+  /// Of the points [begin, end) that are addressable; the others are counted.
   SortedPoints(const PointCloud& cloud, std::size_t begin, std::size_t end, const Eigen::Isometry3d& local_from_cloud,
                double voxels_per_metre);
+
+  /// How many points were left out, and the number of the first one in the cloud.
+  std::size_t num_unreachable() const { return num_unreachable_; }
+  std::size_t first_unreachable() const { return first_unreachable_; }
 
   std::size_t num_blocks() const { return blocks_.size(); }
   BlockKey block(std::size_t number) const { return blocks_[number]; }
@@ -70,6 +74,8 @@ class SortedPoints {
   std::vector<std::size_t> first_point_;  ///< of each block, and the end
   std::vector<std::size_t> num_voxels_;
   LargeVector<KeyedPoint> points_;
+  std::size_t num_unreachable_ = 0;
+  std::size_t first_unreachable_ = 0;
 };
 
 }  // namespace vdbmap

@@ -34,10 +34,14 @@ std::optional<Extent> extent(const VoxelMap& map) {
                 map.frame.anchor + corner_of_voxel(box.max().offsetBy(1), size)};
 }
 
-void check_anchor(const Eigen::Vector3d& anchor) {
+bool is_anchor(const Eigen::Vector3d& anchor) {
   const Eigen::Vector3d tiles = anchor / kTileSize;
   const bool whole = anchor.allFinite() && (tiles.array().round() == tiles.array()).all();
-  if (whole && anchor.cwiseAbs().maxCoeff() < 1e9) return;
+  return whole && anchor.cwiseAbs().maxCoeff() < 1e9;
+}
+
+void check_anchor(const Eigen::Vector3d& anchor) {
+  if (is_anchor(anchor)) return;
   std::ostringstream message;
   message << "anchor is " << anchor.x() << ", " << anchor.y() << ", " << anchor.z() << ", expected whole multiples of "
           << kTileSize << " m below 1e9 m";

@@ -47,7 +47,10 @@ struct Extent {
 };
 std::optional<Extent> extent(const VoxelMap& map);
 
-/// Throws std::invalid_argument unless the anchor is finite and a whole multiple of 64 m on each axis.
+/// Whether a map may have this anchor: finite, a whole multiple of 64 m on each axis, and below 1e9 m.
+bool is_anchor(const Eigen::Vector3d& anchor);
+
+/// Throws std::invalid_argument unless is_anchor().
 void check_anchor(const Eigen::Vector3d& anchor);
 
 /// The anchor for points near `point`: the nearest multiple of 1024 m, so that neighbouring maps mostly share it and

@@ -2,6 +2,7 @@
 #include "vdbmap/io/map_from_files.h"
 
 #include <future>
+#include <sstream>
 #include <stdexcept>
 #include <string>
 
@@ -71,24 +72,35 @@ void note(MapFromFiles& result, const MapInput& input, const ReadResult& read) {
 
 Eigen::Isometry3d pose_of(const MapInput& input) { return input.map_from_scan.value_or(Eigen::Isometry3d::Identity()); }
 
-[[noreturn]] void throw_unreachable(const MapInput& input, const std::out_of_range& error) {
-  throw IoError::malformed(input.scan.name(), error.what());
-}
-
-void add(MapBuilder& builder, const MapInput& input, const PointCloud& cloud) {
+// Adds a cloud; the last one makes the map.
+void add(MapFromFiles& result, MapBuilder& builder, const MapInput& input, const PointCloud& cloud, bool is_last) {
   try {
-    builder.add(cloud, pose_of(input));
+    if (is_last) {
+      result.map = builder.finish(cloud, pose_of(input));
+    } else {
+      builder.add(cloud, pose_of(input));
+    }
   } catch (const std::out_of_range& error) {
-    throw_unreachable(input, error);
+    throw IoError::malformed(input.scan.name(), error.what());
   }
 }
 
-VoxelMap finish(MapBuilder& builder, const MapInput& last_input, const PointCloud& last_cloud) {
-  try {
-    return builder.finish(last_cloud, pose_of(last_input));
-  } catch (const std::out_of_range& error) {
-    throw_unreachable(last_input, error);
-  }
+ReadFinding finding_of(const UnreachablePoints& unreachable) {
+  std::ostringstream what;
+  what.precision(10);
+  what << "points left out that are more than " << unreachable.reach << " m from the map's anchor";
+  std::ostringstream first;
+  first.precision(10);
+  first << unreachable.first.x() << ", " << unreachable.first.y() << ", " << unreachable.first.z();
+  return {what.str(), unreachable.count, first.str(), /*is_damage=*/true};
+}
+
+void note(MapFromFiles& result, const MapInput& input, const UnreachablePoints& unreachable, bool is_strict) {
+  if (unreachable.count == 0) return;
+  const ReadFinding finding = finding_of(unreachable);
+  if (is_strict) refuse_damage(input.scan.file, {finding});
+  result.num_points -= unreachable.count;
+  result.findings.push_back({input.scan.file, finding});
 }
 
 }  // namespace
@@ -107,11 +119,8 @@ MapFromFiles build_map_from_files(const std::vector<MapInput>& inputs, const Map
     note(result, inputs[i], read);
     result.num_out_of_range += num_out_of_range;
     if (!read.cloud.labels.empty()) schemes.note(inputs[i].scan.file, options.label_scheme.value_or(read.label_scheme));
-    if (is_last) {
-      result.map = finish(builder, inputs[i], read.cloud);
-    } else {
-      add(builder, inputs[i], read.cloud);
-    }
+    add(result, builder, inputs[i], read.cloud, is_last);
+    note(result, inputs[i], builder.unreachable(), options.read.strict);
     options.on_scan_done();
   }
   if (result.num_points == 0) throw std::invalid_argument("no point of the scans is within the range");

@@ -51,8 +51,8 @@ struct MapFromFiles {
 };
 
 /// The map of all points in the scans. At most two scans are in memory at once. Throws IoError naming the scan
-/// that cannot be read, lies beyond the addressable range, or has another EPSG code or label scheme than one before;
-/// and std::invalid_argument for no inputs, bad options and a range that leaves no point.
+/// that cannot be read, lies beyond the addressable range with half of its points or more, or has another EPSG code or
+/// label scheme than one before; and std::invalid_argument for no inputs, bad options and a range that leaves no point.
 MapFromFiles build_map_from_files(const std::vector<MapInput>& inputs, const MapFromFilesOptions& options = {});
 
 }  // namespace vdbmap

@@ -273,6 +273,58 @@ TEST(MapBuilder, PointsBeyondTheRangeOfIdsAreRefusedByName) {
   }
 }
 
+TEST(MapBuilder, PointsBeyondTheRangeOfIdsAreLeftOutAndCounted) {
+  const std::vector<Eigen::Vector3d> near = {{1, 2, 3}, {4, 5, 6}, {7, 8, 9}};
+  std::vector<Eigen::Vector3d> all = near;
+  all.insert(all.begin() + 1, {{2e5, 0, 0}, {0, -3e5, 0}});
+  MapBuilder builder(test::anchored({0, 0, 0}));
+  builder.add(cloud_of(all));
+  EXPECT_EQ(builder.unreachable().count, 2U);
+  EXPECT_EQ(builder.unreachable().first, Eigen::Vector3d(2e5, 0, 0));
+  EXPECT_DOUBLE_EQ(builder.unreachable().reach, 104'857.6);
+  EXPECT_EQ(builder.num_points(), 3U);
+  builder.add(cloud_of({{1, 1, 1}}));
+  EXPECT_EQ(builder.unreachable().count, 0U);
+  const VoxelMap map = builder.finish(cloud_of(all));
+  EXPECT_EQ(builder.unreachable().count, 2U);
+
+  MapBuilder expected(test::anchored({0, 0, 0}));
+  for (const auto& points : {near, {{1, 1, 1}}, near}) expected.add(cloud_of(points));
+  EXPECT_EQ(test::difference(map, expected.finish()), "");
+}
+
+// Points of a street in UTM coordinates, and one that a driver left at the origin.
+TEST(MapBuilder, AStrayPointDoesNotChooseTheAnchorWhereverItStands) {
+  const PointCloud street = test::random_cloud(
+      5000, {test::kUtm - Eigen::Vector3d(80, 60, 10), test::kUtm + Eigen::Vector3d(80, 60, 10)}, 41);
+  const VoxelMap expected = build_map(street);
+  for (const std::size_t place : {std::size_t{0}, std::size_t{1}, street.size() / 2, street.size()}) {
+    for (const Eigen::Vector3d& stray :
+         {Eigen::Vector3d(0, 0, 0), Eigen::Vector3d(-1e12, 3, 1e300), Eigen::Vector3d(1e10, 0, 0)}) {
+      PointCloud cloud = street;
+      const auto at = [place](auto& values) { return values.begin() + static_cast<std::ptrdiff_t>(place); };
+      cloud.positions.insert(at(cloud.positions), stray);
+      cloud.colors.insert(at(cloud.colors), Rgb16{1, 2, 3});
+      cloud.intensities.insert(at(cloud.intensities), 5.0f);
+      cloud.labels.insert(at(cloud.labels), std::uint16_t{3});
+      EXPECT_EQ(test::difference(build_map(cloud), expected), "") << stray.transpose() << " at " << place;
+      EXPECT_EQ(test::difference(build_map(cloud, test::anchored(test::kUtm)), expected), "");
+    }
+  }
+}
+
+TEST(MapBuilder, NothingIsMappedThatNoFileCouldHold) {
+  for (const double far : {1e9, 1e10, 1e300}) {
+    for (int axis = 0; axis < 3; ++axis) {
+      Eigen::Vector3d point(1, 2, 3);
+      point[axis] = -far;
+      EXPECT_THROW(build_map(cloud_of({point, point})), std::out_of_range) << far;
+    }
+  }
+  const VoxelMap farthest = build_map(cloud_of({{9.9999e8, -9.9999e8, 0}}));
+  EXPECT_TRUE(is_anchor(farthest.frame.anchor));
+}
+
 TEST(MapBuilder, OptionsThatMakeNoMapAreRefused) {
   for (const std::vector<double>& sizes : std::vector<std::vector<double>>{
            {}, {0.3}, {0.1, 0.25}, {1, 0.1}, {0.1, 0.1}, {0.1, 1, 0.5}, {-0.1}, {std::nan("")}}) {

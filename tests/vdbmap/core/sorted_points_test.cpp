@@ -2,6 +2,7 @@
 #include "vdbmap/core/sorted_points.h"
 
 #include <algorithm>
+#include <limits>
 
 #include <gtest/gtest.h>
 
@@ -66,6 +67,38 @@ TEST(SortedPoints, EveryPointIsCountedOnceInItsVoxel) {
     for (const FoldedBlock& block : blocks) num_voxels += block.voxels.size();
     EXPECT_EQ(num_voxels, expected.size());
     EXPECT_EQ(total(blocks).count, static_cast<std::int64_t>(count));
+  }
+}
+
+TEST(SortedPoints, WhatIdsDoNotReachIsLeftOut) {
+  PointCloud cloud = test::random_cloud(40'000, kAcrossBlocks, 4);
+  const std::vector<FoldedBlock> expected = folded(cloud, 0, 40'000);
+  const auto add = [&](std::size_t place, const Eigen::Vector3d& point) {
+    const auto at = [place](auto& values) { return values.begin() + static_cast<std::ptrdiff_t>(place); };
+    cloud.positions.insert(at(cloud.positions), point);
+    cloud.colors.insert(at(cloud.colors), Rgb16{});
+    cloud.intensities.insert(at(cloud.intensities), 0.0f);
+    cloud.labels.insert(at(cloud.labels), std::uint16_t{0});
+  };
+  const double nan = std::numeric_limits<double>::quiet_NaN();
+  for (const Eigen::Vector3d& far :
+       {Eigen::Vector3d(1e6, 0, 0), Eigen::Vector3d(0, nan, 0), Eigen::Vector3d(0, 0, -1e300)}) {
+    add(17'000, far);
+  }
+  add(30'000, {0, 104'857.6, 0});
+  const SortedPoints points(cloud, 5, cloud.size(), Eigen::Isometry3d::Identity(), 10);
+  EXPECT_EQ(points.num_unreachable(), 4U);
+  EXPECT_EQ(points.first_unreachable(), 17'000U);
+
+  const std::vector<FoldedBlock> found = folded(cloud, 0, cloud.size());
+  ASSERT_EQ(found.size(), expected.size());
+  for (std::size_t i = 0; i < found.size(); ++i) {
+    ASSERT_EQ(found[i].voxels.size(), expected[i].voxels.size());
+    for (std::size_t v = 0; v < found[i].voxels.size(); ++v) {
+      EXPECT_EQ(found[i].voxels[v].key, expected[i].voxels[v].key);
+      EXPECT_EQ(found[i].voxels[v].sums.count, expected[i].voxels[v].sums.count);
+      EXPECT_EQ(found[i].voxels[v].sums.color, expected[i].voxels[v].sums.color);
+    }
   }
 }
 

@@ -156,6 +156,34 @@ TEST_F(MapFromFilesTest, ScansWithAPoseSayNothingOfTheMapsSystem) {
   EXPECT_EQ(built.map.frame.epsg, std::nullopt);
 }
 
+TEST_F(MapFromFilesTest, PointsBeyondTheRangeAreAFinding) {
+  PointCloud street = line(9, {389'012.45, 5'812'345.12, 55.3});
+  const VoxelMap expected = build_map(street);
+  for (const bool is_first : {true, false}) {
+    PointCloud cloud = street;
+    cloud.positions.insert(is_first ? cloud.positions.begin() : cloud.positions.end(), Eigen::Vector3d(0, 7, 0.25));
+    const MapInput input = ply("stray.ply", cloud);
+    const MapFromFiles built = build_map_from_files({input});
+    EXPECT_EQ(built.map.frame, expected.frame);
+    EXPECT_EQ(built.num_points, 9U);
+    ASSERT_EQ(built.findings.size(), 1U);
+    EXPECT_EQ(built.findings[0].file, input.scan.file);
+    EXPECT_EQ(built.findings[0].finding.text(),
+              "1 points left out that are more than 104857.6 m from the map's anchor (0, 7, 0.25)");
+
+    MapFromFilesOptions strict;
+    strict.read.strict = true;
+    EXPECT_EQ(io_error_of([&] { build_map_from_files({input}, strict); }).substr(0, 11), "stray.ply: ");
+  }
+}
+
+TEST_F(MapFromFilesTest, CoordinatesInMillimetresAreRefusedWithTheReason) {
+  const MapInput input = ply("mm.ply", line(3, {389'012'450, 5'812'345'120, 55'300}));
+  EXPECT_EQ(io_error_of([&] { build_map_from_files({input}); }),
+            "mm.ply: point 389012450, 5812345120, 55300 is not within 1e9 m of the origin, where maps lie; are the "
+            "coordinates in metres?");
+}
+
 TEST_F(MapFromFilesTest, ErrorsNameTheFile) {
   const MapInput near = ply("near.ply", line(1, {0, 0, 0}));
   const MapInput far = ply("far.ply", line(1, {2e5, 0, 0}));
