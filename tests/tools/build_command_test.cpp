@@ -131,7 +131,7 @@ TEST_F(Build, LevelsFollowTheVoxelSize) {
   };
   EXPECT_EQ(levels({}), (std::vector<double>{0.1, 1}));
   EXPECT_EQ(levels({"--voxel-size", "0.2"}), (std::vector<double>{0.2, 2}));
-  EXPECT_EQ(levels({"--voxel-size", "0.25"}), (std::vector<double>{0.25}));  // 2.5 m does not divide 64 m
+  EXPECT_EQ(levels({"--voxel-size", "0.25"}), (std::vector<double>{0.25}));  // 2.5 m does not divide 8 m
   EXPECT_EQ(levels({"--levels", "0.5"}), (std::vector<double>{0.5}));
   EXPECT_EQ(levels({"--levels", "0.1,0.5,1"}), (std::vector<double>{0.1, 0.5, 1}));
   EXPECT_EQ(levels({"--voxel-size", "0.5", "--levels", "0.5,1"}), (std::vector<double>{0.5, 1}));
@@ -152,6 +152,8 @@ TEST_F(Build, WrongUsageIsRefusedBeforeAnyWork) {
   const std::vector<std::vector<std::string>> wrong = {
       {},
       {"--voxel-size", "0.3"},
+      {"--voxel-size", "0.64"},
+      {"--levels", "0.1,64"},
       {"--voxel-size", "nan"},
       {"--voxel-size", "0"},
       {"--levels", "0.1,0.25"},

@@ -53,17 +53,18 @@ void add_map_options(CLI::App& app, BuildCommandOptions& options) {
   app.add_option(
          "--voxel-size", options.voxel_size,
          "Edge of the finest voxels [m]; without --levels, a level ten times as large is added where it divides "
-         "64 m")
+         "8 m")
       ->type_name("S")
       ->default_str("0.1");
   add_number_list(app, "--levels", options.levels, 0, "S,S,...",
-                  "Edges of the voxels of all levels [m]: each divides 64 m and is a whole multiple of the one before")
+                  "Edges of the voxels of all levels [m]: each divides 8 m and is a whole multiple of the one before")
       ->default_str("0.1,1");
   app.add_option("--epsg", options.epsg, "EPSG code of the coordinates (default: what LAS files say)")
       ->check(CLI::Range(1, kMaxEpsg).description(""))
       ->type_name("N");
   add_number_list(app, "--anchor", options.anchor, 3, "X,Y,Z",
-                  "Origin of the map's local frame, multiples of 64 m (default: near the first point)");
+                  "Origin of the map's local frame, multiples of 64 m (default: near the first point, or where that is "
+                  "a stray one near the middle of all)");
   app.add_option("--epoch", options.epoch, "Number of the survey, stored as first and last epoch of every voxel")
       ->check(CLI::Range(0, std::numeric_limits<std::int32_t>::max()).description(""))
       ->type_name("N");
@@ -109,7 +110,7 @@ void add_options(CLI::App& app, BuildCommandOptions& options) {
   add_map_output(app, options.output);
 }
 
-// With a voxel size alone: a level ten times as large beside it, unless tiles of 64 m rule it out.
+// With a voxel size alone: a level ten times as large beside it, unless it does not divide 8 m.
 std::vector<double> default_voxel_sizes(double voxel_size) {
   BuildOptions both;
   both.voxel_sizes = {voxel_size, 10 * voxel_size};

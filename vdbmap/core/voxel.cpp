@@ -7,12 +7,12 @@
 namespace vdbmap {
 
 double voxels_per_metre(double voxel_size) {
-  const double per_tile = std::round(kTileSize / voxel_size);
-  const bool in_range = voxel_size >= 0.001 && voxel_size <= kTileSize;  // false for NaN
+  constexpr double kVoxelsPerLeaf = 8;
+  const double per_tile = kVoxelsPerLeaf * std::round(kTileSize / kVoxelsPerLeaf / voxel_size);
+  const bool in_range = voxel_size >= 0.001 && per_tile > 0;  // false for NaN
   if (!in_range || std::abs(per_tile * voxel_size - kTileSize) > 1e-9 * kTileSize) {
     std::ostringstream message;
-    message << "voxel size is " << voxel_size
-            << " m, expected 0.001 to 64 m that divide a tile of 64 m, like 0.05, 0.1, 1";
+    message << "voxel size is " << voxel_size << " m, " << kAllowedVoxelSizes;
     throw std::invalid_argument(message.str());
   }
   return per_tile / kTileSize;

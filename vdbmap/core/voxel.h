@@ -3,6 +3,7 @@
 
 #include <cmath>
 #include <cstdint>
+#include <string_view>
 
 #include <Eigen/Core>
 #include <openvdb/math/Coord.h>
@@ -13,7 +14,8 @@ namespace vdbmap {
 
 using VoxelIndex = openvdb::math::Coord;
 
-/// Edge of a tile [m]; anchors are whole multiples of it, and it is a whole multiple of every voxel size.
+/// Edge of a tile [m]; anchors are whole multiples of it, and it is a whole number of leaves, of 8 voxels, at every
+/// voxel size: another anchor moves whole leaves.
 inline constexpr double kTileSize = 64.0;
 
 /// Indices run over [-kIndexLimit, kIndexLimit) on each axis: 21 bits, +-104 km at 10 cm.
@@ -64,8 +66,12 @@ inline bool is_addressable(const VoxelIndex& voxel) {
   return inside(voxel.x()) && inside(voxel.y()) && inside(voxel.z());
 }
 
-/// Number of voxels along one metre. Throws std::invalid_argument unless the size divides a tile of 64 m, to 1e-9, and
-/// lies in [0.001, 64] m.
+/// What is expected of a voxel size, for messages.
+inline constexpr std::string_view kAllowedVoxelSizes =
+    "expected 0.001 to 8 m that divide 8 m, like 0.05, 0.1, 0.2, 0.5, 1, 2";
+
+/// Number of voxels along one metre. Throws std::invalid_argument unless the size is at least 0.001 m and a tile of 64
+/// m is, to 1e-9, a multiple of 8 voxels long: 8 m are a whole number of them.
 double voxels_per_metre(double voxel_size);
 
 /// Edge of a voxel of the level above in voxels of the level below. Throws std::invalid_argument unless it is a whole

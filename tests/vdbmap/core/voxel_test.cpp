@@ -45,7 +45,7 @@ TEST(Voxel, DecimalCoordinatesOnABorderBelongToTheUpperVoxel) {
 
 TEST(Voxel, ThePointsOfAVoxelLieWithinHalfAnEdgeOfItsCentre) {
   const Eigen::AlignedBox3d box(Eigen::Vector3d::Constant(-70), Eigen::Vector3d::Constant(70));
-  for (const double size : {0.05, 0.1, 0.32, 1.0, 64.0}) {
+  for (const double size : {0.05, 0.1, 0.32, 1.0, 8.0}) {
     for (const Eigen::Vector3d& point : test::random_points(2000, box, 1)) {
       const VoxelIndex voxel = voxel_of_point(point, voxels_per_metre(size));
       const Eigen::Vector3d from_center = point - center_of_voxel(voxel, size);
@@ -96,17 +96,39 @@ TEST(Voxel, PointsThatAreNotFiniteHaveNoAddress) {
   }
 }
 
-TEST(Voxel, SizesThatDivideATileAreExactNumbersPerMetre) {
+TEST(Voxel, SizesOfWhichATileIsAWholeNumberOfLeavesAreExactNumbersPerMetre) {
   EXPECT_EQ(voxels_per_metre(0.1), 10.0);
   EXPECT_EQ(voxels_per_metre(0.05), 20.0);
   EXPECT_EQ(voxels_per_metre(0.001), 1000.0);
-  EXPECT_EQ(voxels_per_metre(64), 1 / 64.0);
+  EXPECT_EQ(voxels_per_metre(0.2), 5.0);
+  EXPECT_EQ(voxels_per_metre(0.8), 1.25);
+  EXPECT_EQ(voxels_per_metre(8), 1 / 8.0);
   EXPECT_EQ(voxels_per_metre(64.0 / 600), 9.375);
 }
 
-TEST(Voxel, SizesThatDoNotDivideATileAreRefused) {
-  for (const double size : {0.3, 0.15, 0.7, 0.1001, 3.0, 0.0, -0.1, 0.0005, 65.0, 128.0, kNaN, kInfinity, -kInfinity}) {
+// Another anchor moves voxels by whole tiles, and records lie leaf by leaf: a tile of 100 voxels of 0.64 m would move
+// half a leaf.
+TEST(Voxel, AnotherAnchorMovesWholeLeaves) {
+  for (int per_tile = 1; per_tile <= 6400; ++per_tile) {
+    const double size = kTileSize / per_tile;
+    if (per_tile % 8 == 0) {
+      EXPECT_NEAR(voxels_per_metre(size) * kTileSize, per_tile, 1e-9);
+    } else {
+      EXPECT_THROW(voxels_per_metre(size), std::invalid_argument) << size;
+    }
+  }
+}
+
+TEST(Voxel, SizesOfWhichATileIsNoWholeNumberOfLeavesAreRefused) {
+  for (const double size : {0.3, 0.15, 0.7, 0.1001, 3.0, 0.0, -0.1, 0.0005, 0.64, 3.2, 16.0, 64.0, 65.0, 128.0, kNaN,
+                            kInfinity, -kInfinity}) {
     EXPECT_THROW(voxels_per_metre(size), std::invalid_argument) << size;
+  }
+  try {
+    voxels_per_metre(0.64);
+  } catch (const std::invalid_argument& error) {
+    EXPECT_STREQ(error.what(),
+                 "voxel size is 0.64 m, expected 0.001 to 8 m that divide 8 m, like 0.05, 0.1, 0.2, 0.5, 1, 2");
   }
 }
 
