@@ -2,12 +2,18 @@
 #include "tools/cli/process.h"
 
 #include <csignal>
+#include <cstdlib>
+#include <exception>
+#include <new>
+#include <string_view>
+#include <system_error>
 
 #include <fcntl.h>
 #include <spdlog/sinks/stdout_sinks.h>
 #include <spdlog/spdlog.h>
 #include <unistd.h>
 
+#include "tools/cli/exit_code.h"
 #include "vdbmap/io/atomic_file.h"
 #include "vdbmap/io/atomic_folder.h"
 
@@ -25,6 +31,36 @@ void occupy_closed_streams() {
   int descriptor = ::open("/dev/null", O_RDONLY);
   while (descriptor >= 0 && descriptor <= STDERR_FILENO) descriptor = ::open("/dev/null", O_RDONLY);
   if (descriptor > STDERR_FILENO) ::close(descriptor);
+}
+
+// Memory may run out where nothing can be thrown: in a thread of a library, or in a destructor of OpenVDB's trees while
+// an earlier std::bad_alloc is on its way. What is written here needs none.
+[[noreturn]] void end_without_memory() {
+  remove_unfinished_files();
+  remove_unfinished_folders();
+  constexpr std::string_view kClearLine = "\r\033[K";  // as the log does
+  constexpr std::string_view kMessage = "vdbmap: out of memory\n";
+  const auto write_text = [](std::string_view text) {
+    [[maybe_unused]] const ssize_t written = ::write(STDERR_FILENO, text.data(), text.size());
+  };
+  if (::isatty(STDERR_FILENO) == 1) write_text(kClearLine);
+  write_text(kMessage);
+  ::_exit(static_cast<int>(ExitCode::kInputOutputFailed));
+}
+
+std::terminate_handler default_terminate_handler = nullptr;
+
+[[noreturn]] void handle_terminate() {
+  try {
+    if (std::current_exception()) std::rethrow_exception(std::current_exception());
+  } catch (const std::bad_alloc&) {
+    end_without_memory();
+  } catch (const std::system_error& error) {  // of a thread that cannot be started
+    if (error.code() == std::errc::resource_unavailable_try_again) end_without_memory();
+  } catch (...) {
+  }
+  default_terminate_handler();
+  std::abort();
 }
 
 void log_to_stderr() {
@@ -45,6 +81,7 @@ void stop_at_once(int signal) {
 void prepare_process() {
   occupy_closed_streams();
   handle_signals();
+  default_terminate_handler = std::set_terminate(handle_terminate);
   log_to_stderr();
 }
 
