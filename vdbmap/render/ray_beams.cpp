@@ -21,6 +21,7 @@ VoxelTree leaves_and_neighbors(const VoxelLevel& level) {
   openvdb::tree::ValueAccessor<openvdb::MaskTree> accessor(tree);
   for (const VoxelLeaf& leaf : level.leaves()) accessor.setValueOn(leaf.origin() >> kLog2Leaf);
   openvdb::tools::dilateActiveValues(tree, 1, openvdb::tools::NN_FACE_EDGE_VERTEX);
+  tree.voxelizeActiveTiles();  // what dilation filled wholly
   LargeVector<VoxelLeaf> leaves;
   for (auto leaf = tree.cbeginLeaf(); leaf; ++leaf) leaves.push_back(*leaf);
   return VoxelTree(std::move(leaves));
