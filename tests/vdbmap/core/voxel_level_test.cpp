@@ -154,6 +154,20 @@ TEST(VoxelLevel, AStreetTakesLessThanAHundredBytesAVoxel) {
   EXPECT_GT(map.finest().memory_bytes(), map.finest().size() * sizeof(VoxelRecord));
 }
 
+// As from the air: 4 m apart, each with a leaf of its own, and mostly with a block of 128 voxels of its own.
+TEST(VoxelLevel, ScatteredPointsTakeLessThanThreeHundredBytesEach) {
+  PointCloud cloud;
+  std::mt19937 random(6);
+  std::uniform_real_distribution<double> height(0, 80);
+  for (int x = 0; x < 100; ++x) {
+    for (int y = 0; y < 100; ++y) cloud.positions.emplace_back(4.0 * x, 4.0 * y, height(random));
+  }
+  const VoxelMap map = build_map(cloud);
+  ASSERT_GT(map.finest().leaves().size(), 9'990U);
+  ASSERT_EQ(map.levels.size(), 2U);
+  EXPECT_LT(memory_bytes(map) / cloud.size(), 300U);  // both levels, everything included
+}
+
 TEST(VoxelLevel, MemoryCountsChannels) {
   PointCloud cloud = test::random_cloud(10'000, {Eigen::Vector3d::Zero(), Eigen::Vector3d(3, 3, 3)}, 5);
   BuildOptions options;

@@ -6,6 +6,14 @@
 
 namespace vdbmap {
 
+std::string_view covariance_problem(const openvdb::Vec3f& diagonal, const openvdb::Vec3f& off_diagonal,
+                                    double voxel_size) {
+  if (!is_finite(diagonal) || !is_finite(off_diagonal)) return "covariance is not finite";
+  const double least_variance = -1e-6 * voxel_size * voxel_size;
+  const bool is_negative = std::min({diagonal.x(), diagonal.y(), diagonal.z()}) < least_variance;
+  return is_negative ? "variance is negative" : "";
+}
+
 openvdb::Vec3f mean_offset_of(const VoxelRecord& record, double voxel_size) {
   const VoxelIndex origin(0, 0, 0);
   const Eigen::Vector3d offset = mean_of(record, origin, voxel_size) - center_of_voxel(origin, voxel_size);

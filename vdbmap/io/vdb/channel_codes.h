@@ -1,6 +1,10 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #pragma once
 
+#include <cmath>
+#include <cstdint>
+#include <string_view>
+
 #include <openvdb/Types.h>
 
 #include "vdbmap/core/voxel_record.h"
@@ -8,6 +12,16 @@
 /// Codes of a record as the float values of channel grids, and back. A decoded value gives its code again, exactly;
 /// any other value gives the code that stands for it best.
 namespace vdbmap {
+
+/// Whether a value of a channel is a number, and no NaN or infinity.
+inline bool is_finite(float value) { return std::isfinite(value); }
+inline bool is_finite(std::int32_t /*value*/) { return true; }
+inline bool is_finite(const openvdb::Vec3f& value) { return value.isFinite(); }
+
+/// What is wrong with a covariance that a file gives, [m^2] its diagonal and the rest, for a message; empty where
+/// nothing is. Other programs round differently, and a variance of 0 may come out of a difference.
+std::string_view covariance_problem(const openvdb::Vec3f& diagonal, const openvdb::Vec3f& off_diagonal,
+                                    double voxel_size);
 
 /// The mean as offset from the voxel's centre [m].
 openvdb::Vec3f mean_offset_of(const VoxelRecord& record, double voxel_size);

@@ -10,6 +10,7 @@
 #include <vector>
 
 #include "vdbmap/core/error.h"
+#include "vdbmap/io/vdb/channel_codes.h"
 #include "vdbmap/io/vdb/map_grids.h"
 
 namespace vdbmap {
@@ -31,10 +32,6 @@ std::string text_of(const VoxelIndex& voxel) {
   return text.str();
 }
 
-bool is_finite(float value) { return std::isfinite(value); }
-bool is_finite(std::int32_t) { return true; }
-bool is_finite(const openvdb::Vec3f& value) { return value.isFinite(); }
-
 // Finds grids by name; every refusal names the grid.
 class GridFinder {
  public:
@@ -55,7 +52,7 @@ class GridFinder {
     ChannelGrids grids;
     grids.suffix = suffix;
     grids.count = required(find_integers("count" + suffix), "count" + suffix);
-    grids.voxel_size = voxel_size_of(*grids.count);
+    grids.voxel_size = size_of_voxels(*grids.count);
     voxelize(*grids.count);
     grids.mean = required(find<Vec3SGrid>("mean" + suffix), "mean" + suffix);
     grids.cov_diag = required(find<Vec3SGrid>("cov_diag" + suffix), "cov_diag" + suffix);
@@ -121,14 +118,11 @@ class GridFinder {
     return grid;
   }
 
-  // Grids of other programs carry the size in single precision; the exact one divides a tile.
-  double voxel_size_of(const GridBase& grid) const {
-    const double stated = grid.transform().voxelSize().x();
-    const double size = stated > 0 ? kTileSize / std::round(kTileSize / stated) : 0;
-    if (!(std::abs(stated - size) <= 1e-6 * size)) {
-      fail(grid.getName(), "has voxels of " + std::to_string(stated) + " m, which do not divide a tile of 64 m");
-    }
-    return size;
+  double size_of_voxels(const GridBase& grid) const {
+    const std::optional<double> size = exact_voxel_size(grid.transform().voxelSize().x());
+    if (size) return *size;
+    fail(grid.getName(), "has voxels of " + std::to_string(grid.transform().voxelSize().x()) + " m, " +
+                             std::string(kAllowedVoxelSizes));
   }
 
   void voxelize(Int32Grid& grid) const {
@@ -159,15 +153,8 @@ class GridFinder {
   }
 
   void check_transform(const GridBase& grid, double voxel_size) const {
-    const openvdb::math::Transform& found = grid.transform();
-    const auto expected = transform_of_level(voxel_size);
-    for (const openvdb::Vec3d& corner : {openvdb::Vec3d(0, 0, 0), openvdb::Vec3d(1, 1, 1), openvdb::Vec3d(1, 2, 3)}) {
-      const openvdb::Vec3d shift = found.indexToWorld(corner) - expected->indexToWorld(corner);
-      if (found.isLinear() && shift.length() <= 1e-5 * voxel_size) continue;
-      const std::string size = std::to_string(voxel_size);
-      fail(grid.getName(), "has a transform other than the level's: expected uniform scale " + size +
-                               " and translation " + std::to_string(0.5 * voxel_size) + " on each axis");
-    }
+    const std::string problem = problem_of_level_transform(grid.transform(), voxel_size);
+    if (!problem.empty()) fail(grid.getName(), problem);
   }
 
   template <typename Grid>

@@ -53,11 +53,13 @@ class LevelImport {
     const auto colors = color->getConstAccessor();
     for (auto count = grids_.count->cbeginValueOn(); count; ++count) {
       const VoxelIndex voxel = count.getCoord();
-      check(voxel, *count, mean.getValue(voxel), cov_diag.getValue(voxel));
+      check(voxel, *count, mean.getValue(voxel));
       VoxelRecord record;
       record.count = static_cast<std::uint32_t>(*count);
       const openvdb::Vec3f& d = cov_diag.getValue(voxel);
       const openvdb::Vec3f& o = cov_offdiag.getValue(voxel);
+      const std::string_view problem = covariance_problem(d, o, grids_.voxel_size);
+      if (!problem.empty()) fail("cov_diag", voxel, std::string(problem));
       record.covariance = {d.x(), d.y(), d.z(), o.x(), o.y(), o.z()};
       set_mean_offset(record, mean.getValue(voxel), grids_.voxel_size);
       set_color_value(record, colors.getValue(voxel));
@@ -65,18 +67,15 @@ class LevelImport {
     }
   }
 
-  void check(const VoxelIndex& voxel, std::int32_t count, const openvdb::Vec3f& mean,
-             const openvdb::Vec3f& cov_diag) const {
+  void check(const VoxelIndex& voxel, std::int32_t count, const openvdb::Vec3f& mean) const {
     if (!is_addressable(voxel)) fail("count", voxel, "beyond the addressable range");
     if (count < 1) fail("count", voxel, "count is " + std::to_string(count) + ", expected 1 or more");
-    // Others round differently, and a variance of 0 may come out of a difference.
+    // Others round differently.
     const double limit = 0.5 * grids_.voxel_size * (1 + 1.0 / kMeanSteps);
-    const double least_variance = -1e-6 * grids_.voxel_size * grids_.voxel_size;
     for (int axis = 0; axis < 3; ++axis) {
       if (std::abs(mean[axis]) > limit) {
         fail("mean", voxel, "offset of " + std::to_string(mean[axis]) + " m leaves the voxel");
       }
-      if (cov_diag[axis] < least_variance) fail("cov_diag", voxel, "variance is negative");
     }
   }
 

@@ -109,7 +109,7 @@ void export_channels(const std::filesystem::path& path, const VoxelMap& map, con
   for (const VoxelLevel& level : map.levels) {
     for (GridMaker& grid : levels.emplace_back(map, level, options).grids()) grids.push_back(std::move(grid));
   }
-  write_vdb(path, grids, metadata_of_map(map));
+  write_vdb_grid_by_grid(path, grids, metadata_of_map(map));
 }
 
 }  // namespace vdbmap

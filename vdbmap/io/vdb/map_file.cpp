@@ -48,7 +48,7 @@ void save_map(const std::filesystem::path& path, const VoxelMap& map, const Save
   openvdb::initialize();
   std::vector<GridMaker> grids;
   for (const VoxelLevel& level : map.levels) add_level(grids, map, level, options);
-  write_vdb(path, grids, metadata_of_map(map));
+  write_vdb_grid_by_grid(path, grids, metadata_of_map(map));
 }
 
 bool is_map_file(const std::filesystem::path& path) {

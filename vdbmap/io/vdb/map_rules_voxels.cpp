@@ -3,6 +3,7 @@
 #include <cmath>
 #include <sstream>
 
+#include "vdbmap/io/vdb/channel_codes.h"
 #include "vdbmap/io/vdb/map_rules.h"
 #include "vdbmap/io/vdb/standard_grids.h"
 #include "vdbmap/io/vdb/voxel_attributes.h"
@@ -16,9 +17,6 @@ using VoxelGrids = openvdb::TypeList<openvdb::FloatGrid, openvdb::Vec3SGrid, ope
 constexpr std::int32_t kMaxIndex = 1 << 30;
 constexpr double kGigabyte = 1e9;
 constexpr double kLargeTexture = 2 * kGigabyte;  // more than many graphics cards can spare
-
-bool is_finite(float value) { return std::isfinite(value); }
-bool is_finite(const openvdb::Vec3f& value) { return value.isFinite(); }
 
 std::string at(const std::string& grid, const openvdb::Coord& voxel) {
   std::ostringstream text;

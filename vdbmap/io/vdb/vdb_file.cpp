@@ -106,12 +106,12 @@ void replace_id(const std::filesystem::path& path) {
   stream.close();
 }
 
-// A file of ours is compared with its checksum.
-void check_content(const std::filesystem::path& path) {
+// A file of ours is compared with its checksum; of others, nothing is known.
+bool is_known_to_be_whole(const std::filesystem::path& path) {
   const std::string id = read_id(path);
-  if (id.starts_with(kIdPrefix) && id != id_of_content(path)) {
-    throw IoError::malformed(path, "is damaged: its content does not match its checksum");
-  }
+  if (!id.starts_with(kIdPrefix)) return false;
+  if (id == id_of_content(path)) return true;
+  throw IoError::malformed(path, "is damaged: its content does not match its checksum");
 }
 
 openvdb::GridPtrVec read_some(openvdb::io::File& file, const GridFilter& is_wanted) {
@@ -127,7 +127,7 @@ openvdb::GridPtrVec read_some(openvdb::io::File& file, const GridFilter& is_want
 
 VdbContent read_vdb(const std::filesystem::path& path, const GridFilter& is_wanted) {
   read_vdb_outline(path);
-  check_content(path);
+  const bool is_whole = is_known_to_be_whole(path);
   openvdb::initialize();
   try {
     openvdb::io::File file(path.string());
@@ -137,6 +137,7 @@ VdbContent read_vdb(const std::filesystem::path& path, const GridFilter& is_want
     content.metadata = file.getMetadata();
     return content;
   } catch (const std::exception& error) {  // damage also ends in bad_alloc, and in messages of kilobytes
+    if (is_whole && dynamic_cast<const std::bad_alloc*>(&error)) throw;
     constexpr std::size_t kMaxMessage = 80;
     const std::string message = std::string(error.what()).substr(0, kMaxMessage);
     throw IoError::malformed(path, "cannot be read as OpenVDB: " + message);
@@ -166,8 +167,8 @@ void write_vdb(const std::filesystem::path& path, const openvdb::GridCPtrVec& gr
   write_atomically(path, grids, metadata);
 }
 
-void write_vdb(const std::filesystem::path& path, const std::vector<GridMaker>& grids,
-               const openvdb::MetaMap& metadata) {
+void write_vdb_grid_by_grid(const std::filesystem::path& path, const std::vector<GridMaker>& grids,
+                            const openvdb::MetaMap& metadata) {
   write_atomically(path, grids, metadata);
 }
 

@@ -32,7 +32,7 @@ using GridMaker = std::function<openvdb::GridBase::ConstPtr()>;
 
 /// Writes the same file, but makes each grid when its turn comes and frees it before the next: grids take
 /// many times as much memory as the level they are made of. Names of grids must differ.
-void write_vdb(const std::filesystem::path& path, const std::vector<GridMaker>& grids,
-               const openvdb::MetaMap& metadata);
+void write_vdb_grid_by_grid(const std::filesystem::path& path, const std::vector<GridMaker>& grids,
+                            const openvdb::MetaMap& metadata);
 
 }  // namespace vdbmap

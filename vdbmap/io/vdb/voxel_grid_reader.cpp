@@ -7,6 +7,8 @@
 
 #include "vdbmap/core/error.h"
 #include "vdbmap/core/voxel_assembly.h"
+#include "vdbmap/io/vdb/channel_codes.h"
+#include "vdbmap/io/vdb/map_grids.h"
 #include "vdbmap/io/vdb/voxel_attributes.h"
 #include "vdbmap/io/vdb/voxel_grid.h"
 
@@ -49,6 +51,7 @@ class GridReader {
   GridReader(const points::PointDataGrid& grid, const std::filesystem::path& path) : grid_(grid), path_(path) {}
 
   ReadLevel read() {
+    check_transform();
     for (auto leaf = grid_.tree().cbeginLeaf(); leaf; ++leaf) {
       if (leaf->getLastValue() > 0) read_leaf(*leaf);
     }
@@ -58,6 +61,18 @@ class GridReader {
  private:
   [[noreturn]] void fail(const std::string& reason) const {
     throw IoError::malformed(path_, "grid '" + grid_.getName() + "' " + reason);
+  }
+
+  // Another program may have moved, turned or scaled the grid.
+  void check_transform() {
+    const double found = grid_.voxelSize().x() / kVoxelsPerCell;
+    voxel_size_ = exact_voxel_size(found).value_or(0);
+    if (voxel_size_ == 0) fail("has voxels of " + std::to_string(found) + " m, " + std::string(kAllowedVoxelSizes));
+    const std::string problem = problem_of_level_transform(grid_.transform(), voxel_size_ * kVoxelsPerCell);
+    if (!problem.empty()) fail(problem);
+    const auto stated = grid_.getMetadata<openvdb::DoubleMetadata>("voxel_size");
+    if (!stated || std::abs(stated->value() - voxel_size_) <= 1e-6 * voxel_size_) return;
+    fail("has voxels of " + std::to_string(voxel_size_) + " m, but says " + std::to_string(stated->value()) + " m");
   }
 
   template <typename Array>
@@ -79,7 +94,10 @@ class GridReader {
     for_each_channel([&]<typename Value>(const char* name, std::vector<Value> VoxelChannels::*channel) {
       if (!has_optional(name)) return;
       const auto codes = require<ChannelArray<Value>>(leaf, name);
-      for (std::size_t i = 0; i < voxels.size(); ++i) (channels_.*channel).push_back(codes[i]);
+      for (std::size_t i = 0; i < voxels.size(); ++i) {
+        if (!is_finite(codes[i])) fail(std::string("has a voxel whose ") + name + " is not finite");
+        (channels_.*channel).push_back(codes[i]);
+      }
     });
   }
 
@@ -116,6 +134,8 @@ class GridReader {
     const auto planarity = require<ShareArray>(leaf, "planarity");
     for (std::size_t i = 0; i < voxels.size(); ++i) {
       if (count[i] < 1) fail("has a voxel with count " + std::to_string(count[i]));
+      const std::string_view problem = covariance_problem(cov_diag[i], cov_offdiag[i], voxel_size_);
+      if (!problem.empty()) fail("has a voxel whose " + std::string(problem));
       VoxelRecord& record = voxels[i].record;
       record.covariance = {cov_diag[i].x(),    cov_diag[i].y(),    cov_diag[i].z(),
                            cov_offdiag[i].x(), cov_offdiag[i].y(), cov_offdiag[i].z()};
@@ -134,6 +154,7 @@ class GridReader {
   void read_color(const PointLeaf& leaf, std::span<ReadVoxel> voxels) const {
     const auto color = require<VectorArray>(leaf, kColor);
     for (std::size_t i = 0; i < voxels.size(); ++i) {
+      if (!is_finite(color[i])) fail("has a voxel whose colour is not finite");
       set_color(voxels[i].record, {color[i].x(), color[i].y(), color[i].z()});
     }
   }
@@ -144,7 +165,7 @@ class GridReader {
     std::iota(order.begin(), order.end(), 0u);
     parallel_sort(order, [&](auto a, auto b) { return voxels_[a].key < voxels_[b].key; });
 
-    VoxelAssembly assembly(grid_.voxelSize().x() / kVoxelsPerCell, voxels_.size());
+    VoxelAssembly assembly(voxel_size_, voxels_.size());
     for (const std::uint32_t i : order) {
       if (!assembly.add(voxels_[i].index, voxels_[i].record)) fail("holds a voxel twice");
     }
@@ -160,6 +181,7 @@ class GridReader {
 
   const points::PointDataGrid& grid_;
   const std::filesystem::path& path_;
+  double voxel_size_ = 0;  // [m]
   std::vector<ReadVoxel> voxels_;
   VoxelChannels channels_;
   std::optional<std::vector<std::string>> optional_;  // attributes that all leaves must have alike

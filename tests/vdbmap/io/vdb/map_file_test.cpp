@@ -2,6 +2,7 @@
 #include "vdbmap/io/vdb/map_file.h"
 
 #include <csignal>
+#include <limits>
 #include <random>
 
 #include <gtest/gtest.h>
@@ -13,6 +14,7 @@
 #include "tests/support/sample_maps.h"
 #include "tests/support/sanitizers.h"
 #include "vdbmap/core/parallel.h"
+#include "vdbmap/io/vdb/map_channels.h"
 #include "vdbmap/io/vdb/map_metadata.h"
 #include "vdbmap/io/vdb/vdb_file.h"
 
@@ -162,6 +164,93 @@ TEST_F(MapFile, FilesOfOtherProgramsAreRefusedWithTheReason) {
     ++num_files;
   }
   EXPECT_EQ(num_files, 3u);
+}
+
+// What another OpenVDB program may do with a grid of ours, and say nothing.
+using Change = void (*)(openvdb::GridBase& grid);
+
+struct ChangedGrid {
+  const char* name;
+  Change change;
+};
+
+class ChangedMap : public MapFile, public testing::WithParamInterface<ChangedGrid> {
+ protected:
+  // The error of loading a map of which one level's voxels were changed; those of the other stay.
+  std::string error_after(const std::string& grid_name) const {
+    save_map(folder_ / "map.vdb", test::sample_map());
+    const VdbContent content = read_vdb(folder_ / "map.vdb");
+    openvdb::GridCPtrVec grids;
+    for (const openvdb::GridBase::Ptr& grid : content.grids) {
+      if (grid->getName() == grid_name) GetParam().change(*grid);
+      grids.push_back(grid);
+    }
+    write_vdb(folder_ / "map.vdb", grids, *content.metadata);
+    return io_error_of([&] { load_map(folder_ / "map.vdb"); });
+  }
+};
+
+TEST_P(ChangedMap, IsRefused) {
+  for (const std::string name : {"voxels", "voxels_1m"}) {
+    const std::string message = error_after(name);
+    EXPECT_EQ(message.find("map.vdb: grid '" + name + "' has "), 0U) << message;
+  }
+}
+
+const ChangedGrid kChangedGrids[] = {
+    {"Moved",
+     [](auto& grid) {
+       grid.transform().postTranslate({10, 0, 0});
+     }},
+    {"MovedByHalfAVoxel",
+     [](auto& grid) {
+       grid.transform().preTranslate({0, 0.5, 0});
+     }},
+    {"MovedByAMillimetre",
+     [](auto& grid) {
+       grid.transform().postTranslate({0, 0, 1e-3});
+     }},
+    {"Turned", [](auto& grid) { grid.transform().postRotate(0.1, openvdb::math::Z_AXIS); }},
+    {"TurnedByAQuarter", [](auto& grid) { grid.transform().postRotate(1.5707963267948966, openvdb::math::Z_AXIS); }},
+    {"Mirrored",
+     [](auto& grid) {
+       grid.transform().postScale({1, 1, -1});
+     }},
+    {"TwiceAsLarge", [](auto& grid) { grid.transform().postScale(2.0); }},
+    {"InMillimetres", [](auto& grid) { grid.transform().postScale(1000.0); }},
+    {"HigherOnly",
+     [](auto& grid) {
+       grid.transform().postScale({1, 1, 2});
+     }},
+    {"Sheared", [](auto& grid) { grid.transform().postShear(0.2, openvdb::math::X_AXIS, openvdb::math::Y_AXIS); }},
+    {"InAFrustum", [](auto& grid) {
+       grid.setTransform(
+           openvdb::math::Transform::createFrustumTransform(openvdb::BBoxd({0, 0, 0}, {9, 9, 9}), 0.5, 10, 0.4));
+     }}};
+
+INSTANTIATE_TEST_SUITE_P(Changes, ChangedMap, testing::ValuesIn(kChangedGrids),
+                         [](const auto& change) { return std::string(change.param.name); });
+
+TEST_F(MapFile, NumbersThatAreNoneAreRefusedAsByImport) {
+  const float nan = std::numeric_limits<float>::quiet_NaN();
+  const float infinity = std::numeric_limits<float>::infinity();
+  for (const float bad : {nan, infinity, -infinity}) {
+    for (std::size_t element = 0; element < 6; ++element) {
+      VoxelMap map = test::sample_map();
+      map.levels[0].records()[3].covariance[element] = bad;
+      save_map(folder_ / "map.vdb", map);
+      EXPECT_EQ(io_error_of([&] { load_map(folder_ / "map.vdb"); }),
+                "map.vdb: grid 'voxels' has a voxel whose covariance is not finite");
+      export_channels(folder_ / "channels.vdb", map);
+      EXPECT_NE(io_error_of([&] { import_channels(folder_ / "channels.vdb"); }).find("is not finite"),
+                std::string::npos);
+    }
+  }
+  VoxelMap map = test::sample_map();
+  map.levels[0].records()[3].covariance[1] = -1;
+  save_map(folder_ / "map.vdb", map);
+  EXPECT_EQ(io_error_of([&] { load_map(folder_ / "map.vdb"); }),
+            "map.vdb: grid 'voxels' has a voxel whose variance is negative");
 }
 
 TEST_F(MapFile, LevelsThatAreNoMultiplesAreRefused) {
