@@ -104,16 +104,21 @@ std::optional<int> epsg_of(const std::vector<Node>& children) {
   return std::nullopt;
 }
 
-// UNIT["foot",0.3048], directly in the system or, as newer texts have it, in its axes.
+// The factor of UNIT["foot",0.3048].
+std::optional<double> metres_per_unit(const Node& unit) {
+  std::string_view rest = unit.body;
+  next_value(rest);  // the name
+  const auto factor = parse_number(next_value(rest));
+  return factor && std::isfinite(*factor) && *factor > 0 ? factor : std::nullopt;
+}
+
+// The unit stands directly in the system or, as newer texts have it, in its axes. No deeper: a foreign text may nest
+// brackets without end.
 std::optional<double> metres_per_unit_of(const std::vector<Node>& children) {
-  if (const auto unit = find_node(children, kLengthUnits)) {
-    std::string_view rest = unit->body;
-    next_value(rest);  // the name
-    const auto factor = parse_number(next_value(rest));
-    return factor && std::isfinite(*factor) && *factor > 0 ? factor : std::nullopt;
-  }
+  if (const auto unit = find_node(children, kLengthUnits)) return metres_per_unit(*unit);
   const auto axis = find_node(children, kAxis);
-  return axis ? metres_per_unit_of(outer_nodes(axis->body)) : std::nullopt;
+  const auto unit = axis ? find_node(outer_nodes(axis->body), kLengthUnits) : std::nullopt;
+  return unit ? metres_per_unit(*unit) : std::nullopt;
 }
 
 // Newer texts have one keyword for degrees and for axes through the centre of the earth.

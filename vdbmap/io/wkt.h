@@ -9,7 +9,8 @@
 namespace vdbmap {
 
 /// What well-known text (OGC 01-009 and its successor 18-010) says about horizontal coordinates; nothing where it does
-/// not, however malformed.
+/// not, however malformed. Time and memory follow the length of the text: no bracket deeper than six within each other
+/// is looked into.
 struct WktReferenceSystem {
   std::optional<int> epsg;                ///< of the projected system, else of the geographic one
   std::optional<double> metres_per_unit;  ///< of the projected system

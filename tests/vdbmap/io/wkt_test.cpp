@@ -62,6 +62,20 @@ TEST(Wkt, TruncationAnywhereIsHarmless) {
   }
 }
 
+TEST(Wkt, NestingOfAnyDepthTakesNoStack) {
+  // A stack of 8 MB holds some 60,000 calls; looking into each bracket anew would take hours.
+  for (const std::string keyword : {"AXIS", "UNIT", "PROJCS", "PROJCRS", "COMPD_CS", "BOUNDCRS", "GEOGCS", "ID", ""}) {
+    for (const std::string bracket : {"[", "("}) {
+      std::string nested = "PROJCS[";
+      for (int i = 0; i < 300'000; ++i) nested += keyword + bracket;
+      const auto parsed = parse_wkt(nested);
+      EXPECT_EQ(parsed.epsg, std::nullopt) << keyword;
+      EXPECT_EQ(parsed.metres_per_unit, std::nullopt) << keyword;
+      EXPECT_EQ(parse_wkt(nested.substr(7)).epsg, std::nullopt) << keyword;
+    }
+  }
+}
+
 TEST(Wkt, NonsenseSaysNothing) {
   for (const std::string text :
        {"", "]]]]", "PROJCS", "PROJCS[]", "PROJCS[UNIT[]]", "PROJCS[UNIT[\"x\",-1]]",
