@@ -2,13 +2,12 @@
 #include "vdbmap/io/atomic_file.h"
 
 #include <cerrno>
-#include <cstdlib>
 
 #include <fcntl.h>
-#include <sys/stat.h>
 #include <unistd.h>
 
 #include "vdbmap/core/error.h"
+#include "vdbmap/io/output_path.h"
 #include "vdbmap/io/unfinished_paths.h"
 
 namespace vdbmap {
@@ -18,28 +17,34 @@ constexpr std::size_t kBufferSize = 1 << 20;  // [bytes]
 
 UnfinishedPaths<16> unfinished_files;
 
+// With the permissions that the kernel gives by the user's umask, which no process can ask for without setting it, for
+// all its threads. The name is remembered first, so that no signal finds a file that is not.
 int create_file_beside(const std::filesystem::path& target, std::filesystem::path& temporary) {
-  std::string name = target.string() + ".XXXXXX";
-  const int descriptor = ::mkostemp(name.data(), O_CLOEXEC);
-  if (descriptor < 0) throw IoError::system(target, "cannot create", errno);
-  temporary = name;
+  for (;;) {
+    temporary = temporary_name_beside(target);
+    unfinished_files.remember(temporary.string());
+    const int descriptor = ::open(temporary.c_str(), O_RDWR | O_CREAT | O_EXCL | O_CLOEXEC, 0666);
+    if (descriptor >= 0) return descriptor;
+    const int reason = errno;
+    unfinished_files.forget(temporary.string());
+    if (reason != EEXIST) throw IoError::system(target, "cannot create", reason);
+  }
+}
 
-  const mode_t mask = ::umask(0);  // mkstemp gives 0600; a finished file follows the user's umask
-  ::umask(mask);
-  ::fchmod(descriptor, 0666 & ~mask);
-  return descriptor;
+// A rename would put a file in the place of a device or pipe.
+void check_replaceable(const std::filesystem::path& target) {
+  const std::filesystem::file_status status = status_of_target(target);
+  if (std::filesystem::is_directory(status)) throw IoError::system(target, "cannot create", EISDIR);
+  if (std::filesystem::exists(status) && !std::filesystem::is_regular_file(status)) {
+    throw IoError::system(target, "cannot replace what is no regular file", EINVAL);
+  }
 }
 
 }  // namespace
 
-AtomicFile::AtomicFile(std::filesystem::path target) : target_(std::move(target)) {
-  if (std::filesystem::is_directory(target_)) throw IoError::system(target_, "cannot create", EISDIR);
-  // A rename would put a file in the place of a device or pipe.
-  if (std::filesystem::exists(target_) && !std::filesystem::is_regular_file(target_)) {
-    throw IoError::system(target_, "cannot replace what is no regular file", EINVAL);
-  }
+AtomicFile::AtomicFile(const std::filesystem::path& target) : target_(follow_links(target)) {
+  check_replaceable(target_);
   descriptor_ = create_file_beside(target_, temporary_);
-  unfinished_files.remember(temporary_.string());
 }
 
 AtomicFile::~AtomicFile() {

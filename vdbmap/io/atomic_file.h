@@ -8,11 +8,13 @@
 namespace vdbmap {
 
 /// A file that appears whole or not at all: written beside its target under a temporary name, flushed to disk, then
-/// renamed over it. Destruction without commit() removes the temporary file and leaves the target as it was.
+/// renamed over it. Destruction without commit() removes the temporary file and leaves the target as it was. Where the
+/// target is a symbolic link, the link stays and what it points to is replaced.
 class AtomicFile {
  public:
-  /// Creates the temporary file. Throws IoError (system) where the folder cannot be written.
-  explicit AtomicFile(std::filesystem::path target);
+  /// Creates the temporary file, with the permissions of the user's umask. Throws IoError (system) where the folder
+  /// cannot be written, or the target is a folder, a pipe or a device.
+  explicit AtomicFile(const std::filesystem::path& target);
   ~AtomicFile();
   AtomicFile(const AtomicFile&) = delete;
   AtomicFile& operator=(const AtomicFile&) = delete;

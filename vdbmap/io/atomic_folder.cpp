@@ -15,6 +15,7 @@
 #include <unistd.h>
 
 #include "vdbmap/core/error.h"
+#include "vdbmap/io/output_path.h"
 #include "vdbmap/io/unfinished_paths.h"
 
 namespace vdbmap {
@@ -68,19 +69,22 @@ void remove_folder(const char* path) noexcept {
   }
 }
 
+// As create_file_beside() of atomic_file.cpp.
 std::filesystem::path create_folder_beside(const std::filesystem::path& target) {
-  std::string name = target.string() + ".XXXXXX";
-  if (::mkdtemp(name.data()) == nullptr) throw IoError::system(target, "cannot create", errno);
-  const mode_t mask = ::umask(0);  // mkdtemp gives 0700; a finished folder follows the user's umask
-  ::umask(mask);
-  ::chmod(name.c_str(), 0777 & ~mask);
-  return name;
+  for (;;) {
+    const std::filesystem::path temporary = temporary_name_beside(target);
+    unfinished_folders.remember(temporary.string());
+    if (::mkdir(temporary.c_str(), 0777) == 0) return temporary;
+    const int reason = errno;
+    unfinished_folders.forget(temporary.string());
+    if (reason != EEXIST) throw IoError::system(target, "cannot create", reason);
+  }
 }
 
 // "street/" and "street" are one folder, but only the latter has a name to put something beside.
 std::filesystem::path without_trailing_slash(const std::filesystem::path& path) {
-  const std::filesystem::path whole = std::filesystem::weakly_canonical(std::filesystem::absolute(path));
-  return whole.has_filename() ? whole : whole.parent_path();
+  const std::filesystem::path given = path.has_filename() ? path : path.parent_path();
+  return std::filesystem::weakly_canonical(std::filesystem::absolute(follow_links(given)));
 }
 
 // Swaps two folders, so that there is always one of them at either place; where the file system cannot, one after the
@@ -88,7 +92,7 @@ std::filesystem::path without_trailing_slash(const std::filesystem::path& path) 
 bool exchange(const std::filesystem::path& a, const std::filesystem::path& b) {
   if (::renameat2(AT_FDCWD, a.c_str(), AT_FDCWD, b.c_str(), RENAME_EXCHANGE) == 0) return true;
   if (errno != EINVAL && errno != ENOSYS) return false;
-  const std::filesystem::path aside = a.string() + ".old";
+  const std::filesystem::path aside = temporary_name_beside(a);
   return ::rename(b.c_str(), aside.c_str()) == 0 && ::rename(a.c_str(), b.c_str()) == 0 &&
          ::rename(aside.c_str(), a.c_str()) == 0;
 }
@@ -96,11 +100,11 @@ bool exchange(const std::filesystem::path& a, const std::filesystem::path& b) {
 }  // namespace
 
 AtomicFolder::AtomicFolder(const std::filesystem::path& target) : target_(without_trailing_slash(target)) {
-  if (std::filesystem::exists(target_) && !std::filesystem::is_directory(target_)) {
+  const std::filesystem::file_status status = status_of_target(target_);
+  if (std::filesystem::exists(status) && !std::filesystem::is_directory(status)) {
     throw IoError::system(target, "cannot create the folder", ENOTDIR);
   }
   temporary_ = create_folder_beside(target_);
-  unfinished_folders.remember(temporary_.string());
 }
 
 AtomicFolder::~AtomicFolder() {

@@ -4,6 +4,7 @@
 #include <iterator>
 
 #include <gtest/gtest.h>
+#include <sys/stat.h>
 #include <unistd.h>
 
 #include "tests/support/folders.h"
@@ -61,6 +62,28 @@ TEST(AtomicFolder, SignalHandlersRemoveWhatIsUnfinished) {
   for (int i = 0; i < 300; ++i) fill(folder, std::to_string(i));
   remove_unfinished_folders();
   EXPECT_EQ(num_entries(parent.path()), 0U);
+}
+
+TEST(AtomicFolder, FollowsTheUmaskAndLeavesItAlone) {
+  const test::TemporaryFolder folder;
+  const mode_t before = ::umask(027);
+  AtomicFolder street(folder / "street");
+  street.commit();
+  EXPECT_EQ(::umask(before), 027u);
+  EXPECT_EQ(std::filesystem::status(folder / "street").permissions(), std::filesystem::perms(0750));
+}
+
+TEST(AtomicFolder, ReplacesWhatALinkPointsToAndMayHaveALongName) {
+  const test::TemporaryFolder folder;
+  std::filesystem::create_directory_symlink("street", folder / "link");
+  AtomicFolder dangling(folder / "link");
+  dangling.commit();
+  EXPECT_TRUE(std::filesystem::is_symlink(folder / "link"));
+  EXPECT_TRUE(std::filesystem::is_directory(folder / "street"));
+
+  AtomicFolder long_name(folder / std::string(255, 'x'));
+  long_name.commit();
+  EXPECT_TRUE(std::filesystem::is_directory(folder / std::string(255, 'x')));
 }
 
 TEST(AtomicFolder, DoesNotFollowLinksWhenItRemoves) {
