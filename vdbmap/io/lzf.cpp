@@ -11,7 +11,7 @@ constexpr std::size_t kLongestLiteral = 32;
 constexpr std::size_t kShortestCopy = 3;
 constexpr std::size_t kLongestCopy = 264;  // 9 + 255
 constexpr std::size_t kLongestDistance = 1 << 13;
-constexpr std::size_t kMostExpansion = kLongestCopy / 3;  // a copy takes 3 bytes
+static_assert(kMostLzfExpansion == kLongestCopy / 3);
 
 std::size_t byte_at(std::string_view bytes, std::size_t position) {
   return static_cast<unsigned char>(bytes[position]);
@@ -55,7 +55,7 @@ std::size_t common_length(std::string_view data, std::size_t a, std::size_t b) {
 }  // namespace
 
 std::optional<std::string> lzf_decompress(std::string_view compressed, std::uint64_t size) {
-  if (size / kMostExpansion > compressed.size()) return std::nullopt;
+  if (size / kMostLzfExpansion > compressed.size()) return std::nullopt;
   std::string output;
   output.reserve(size);
   std::size_t at = 0;

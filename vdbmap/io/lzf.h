@@ -12,6 +12,9 @@ namespace vdbmap {
 // any other a copy of earlier output: 3 bits of length, 13 bits of distance, one more byte of length where the 3 are
 // all set.
 
+/// No LZF data expand to more than this many times their length: a copy of 264 bytes takes 3.
+inline constexpr std::uint64_t kMostLzfExpansion = 88;
+
 /// Nothing where `compressed` is not LZF data of exactly `size` bytes. Takes memory only for what `compressed` can
 /// expand to: at most 88 times its length.
 std::optional<std::string> lzf_decompress(std::string_view compressed, std::uint64_t size);

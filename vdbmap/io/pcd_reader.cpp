@@ -106,6 +106,20 @@ PointCloud decode_uncompressed(std::string_view data, const PcdHeader& header, c
   return cloud;
 }
 
+// LZF expands up to 88 times, and a point of 3 bytes to 46 of a cloud. Real points don't: those of whole images, most
+// of them NaN, are a few millions at most.
+void check_expansion(const ByteReader& reader, const PcdHeader& header, std::uint64_t compressed_size) {
+  constexpr std::uint64_t kAlways = std::uint64_t{1} << 28;  // [bytes]
+  constexpr std::uint64_t kPerByte = 32;
+  constexpr std::uint64_t kMostOfPoint = 24 + 6 + 4 + 8 + 2 + 2;  // [bytes] of a cloud with every attribute
+  const std::uint64_t size = header.num_points * std::max(header.point_size(), kMostOfPoint);
+  const std::uint64_t most = std::max(kAlways, kPerByte * compressed_size);
+  if (size <= most) return;
+  reader.fail(std::to_string(compressed_size) + " bytes would expand to " + std::to_string(header.num_points) +
+              " points of " + std::to_string(size) + " bytes, allowed are " + std::to_string(most) +
+              " bytes: write the file uncompressed");
+}
+
 PointCloud read_compressed(ByteReader& reader, const PcdHeader& header, const Fields& fields) {
   const auto compressed_size = reader.read_le<std::uint32_t>();
   const auto size = reader.read_le<std::uint32_t>();
@@ -115,7 +129,9 @@ PointCloud read_compressed(ByteReader& reader, const PcdHeader& header, const Fi
                 std::to_string(header.num_points * header.point_size()));
   }
   const std::uint64_t begin = reader.offset();
-  const std::optional<std::string> data = lzf_decompress(reader.bytes(compressed_size), size);
+  const std::string_view compressed = reader.bytes(compressed_size);
+  if (size / kMostLzfExpansion <= compressed_size) check_expansion(reader, header, compressed_size);
+  const std::optional<std::string> data = lzf_decompress(compressed, size);
   if (!data) {
     throw IoError::malformed_at_byte(reader.path(), begin, "not LZF data of " + std::to_string(size) + " bytes");
   }

@@ -153,6 +153,19 @@ TEST_F(Pcd, RefusesDamagedCompressedData) {
             "scan.pcd: byte 199: not LZF data of 3600000000 bytes");
 }
 
+// Zeros expand 88 times, and a point of three bytes takes 46 in memory.
+TEST_F(Pcd, RefusesCompressedDataThatWouldFillTheMemory) {
+  const auto zeros = [](std::size_t num_points) {
+    const std::string fields = "FIELDS x y z\nSIZE 1 1 1\nTYPE I I I\nWIDTH ";
+    return fields + std::to_string(num_points) + "\nHEIGHT 1\nDATA binary_compressed\n" +
+           compressed(std::string(3 * num_points, '\0'));
+  };
+  EXPECT_EQ(read(zeros(300'000)).cloud.size(), 300'000u) << "whole images of points may be empty for the most part";
+  const std::string message = error(zeros(6'000'000));
+  EXPECT_NE(message.find("expand to 6000000 points of 276000000 bytes, allowed are 268435456"), std::string::npos)
+      << message;
+}
+
 TEST_F(Pcd, NamesTheLineOfWhatIsWrongInTheHeader) {
   const std::string end = "POINTS 1\nDATA ascii\n1 2 3\n";
   EXPECT_EQ(error("FIELDS x y\nSIZE 4 4\nTYPE F F\n" + end), "scan.pcd:1: the points have no field 'z'");
