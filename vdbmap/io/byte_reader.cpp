@@ -52,6 +52,8 @@ void read_bytes(const Descriptor& file, const std::filesystem::path& path, char*
 
 }  // namespace
 
+void check_regular_file(const std::filesystem::path& path) { size_of_regular_file(Descriptor(path), path); }
+
 std::string read_front(const std::filesystem::path& path, std::uint64_t count) {
   const Descriptor file(path);
   std::string front(std::min(count, size_of_regular_file(file, path)), '\0');

@@ -37,6 +37,10 @@ T load(const char* bytes) {
 /// The first `count` bytes of a file, or all where it is shorter. Throws IoError.
 std::string read_front(const std::filesystem::path& path, std::uint64_t count);
 
+/// Throws IoError unless `path` is a file that can be read more than once from its front: it is missing, a folder, a
+/// pipe or a device. For readers that open it themselves.
+void check_regular_file(const std::filesystem::path& path);
+
 /// A file read from front to back. Whatever would leave the file throws IoError with path, offset and reason.
 class ByteReader {
  public:

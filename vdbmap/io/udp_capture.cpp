@@ -6,11 +6,11 @@
 #include <cerrno>
 #include <cstdio>
 #include <string>
-#include <system_error>
 
 #include <pcap/pcap.h>
 
 #include "vdbmap/core/error.h"
+#include "vdbmap/io/byte_reader.h"
 
 namespace vdbmap {
 namespace {
@@ -96,11 +96,7 @@ std::optional<UdpDatagram> udp_datagram(Bytes ip) {
 void UdpCapture::Closer::operator()(pcap* capture) const { pcap_close(capture); }
 
 UdpCapture::UdpCapture(const std::filesystem::path& path) {
-  std::error_code ignored;
-  // Opening a named pipe would wait for its writer.
-  if (std::filesystem::exists(path, ignored) && !std::filesystem::is_regular_file(path, ignored)) {
-    throw IoError::malformed(path, "not a regular file");
-  }
+  check_regular_file(path);
   // Opened here, because pcap_open_offline() takes "-" for the standard input.
   std::FILE* file = std::fopen(path.c_str(), "rb");
   if (file == nullptr) throw IoError::system(path, "cannot open", errno);

@@ -1,13 +1,19 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "vdbmap/io/vdb/vdb_file.h"
 
+#include <algorithm>
 #include <array>
 #include <cerrno>
+#include <cstdint>
 #include <cstring>
 #include <fstream>
+#include <functional>
+#include <memory>
 #include <string>
+#include <vector>
 
 #include <openvdb/io/GridDescriptor.h>
+#include <openvdb/io/io.h>
 #include <xxhash.h>
 
 #include "vdbmap/core/error.h"
@@ -23,9 +29,25 @@ constexpr std::size_t kIdSize = 36;
 // An id that begins so is the checksum of the rest: "vdbmap" in ASCII codes.
 constexpr std::string_view kIdPrefix = "7664626d-6170-";
 
-// The archive that openvdb::io::File writes, into a stream of ours: File itself does not see a full disk.
+// The archive of openvdb::io::File on streams of ours: File itself sees neither a full disk nor the end of a file that
+// promises more than it holds, behind which it goes on reading nothing into ever more memory.
 class SeekableArchive : public openvdb::io::Archive {
  public:
+  // The stream throws at its end.
+  VdbContent read_from(std::istream& stream, const GridFilter& is_wanted) {
+    readHeader(stream);
+    VdbContent content;
+    content.metadata = std::make_shared<openvdb::MetaMap>();
+    content.metadata->readMeta(stream);
+    const std::int32_t num_grids = readGridCount(stream);
+    if (!inputHasGridOffsets()) {
+      content.grids = read_in_turn(stream, num_grids, is_wanted);
+    } else {
+      content.grids = read_chosen(stream, read_entries(stream, num_grids), is_wanted);
+    }
+    return content;
+  }
+
   void write_to(std::ostream& stream, const openvdb::GridCPtrVec& grids, const openvdb::MetaMap& metadata) const {
     Archive::write(stream, grids, /*seekable=*/true, metadata);
   }
@@ -47,6 +69,66 @@ class SeekableArchive : public openvdb::io::Archive {
       openvdb::io::setDataCompression(stream, compression());  // the grid may have set its own
     }
     openvdb::io::clearStreamMetadataPtr(stream);
+  }
+
+ private:
+  struct Entry {
+    openvdb::io::GridDescriptor descriptor;
+    openvdb::GridBase::Ptr grid;  // of its type, without content
+  };
+
+  static Entry read_entry(std::istream& stream) {
+    Entry entry;
+    entry.grid = entry.descriptor.read(stream);
+    return entry;
+  }
+
+  // In the order of their names, as File has them.
+  static std::vector<Entry> read_entries(std::istream& stream, std::int32_t num_grids) {
+    std::vector<Entry> entries;
+    for (std::int32_t i = 0; i < num_grids; ++i) {
+      entries.push_back(read_entry(stream));
+      entries.back().descriptor.seekToEnd(stream);
+    }
+    std::ranges::stable_sort(entries, std::less(), [](const Entry& entry) { return entry.descriptor.gridName(); });
+    return entries;
+  }
+
+  // Grids that share the tree of another need that one too.
+  openvdb::GridPtrVec read_chosen(std::istream& stream, const std::vector<Entry>& entries,
+                                  const GridFilter& is_wanted) const {
+    NamedGridMap read;
+    const auto read_once = [&](const Entry& entry) {
+      if (!read.emplace(entry.descriptor.uniqueName(), entry.grid).second) return;
+      entry.descriptor.seekToGrid(stream);
+      readGrid(entry.grid, entry.descriptor, stream);
+    };
+    openvdb::GridPtrVec chosen;
+    for (const Entry& entry : entries) {
+      if (is_wanted && !is_wanted(openvdb::io::GridDescriptor::nameAsString(entry.descriptor.uniqueName()))) continue;
+      read_once(entry);
+      for (const Entry& other : entries) {
+        if (other.descriptor.uniqueName() == entry.descriptor.instanceParentName()) read_once(other);
+      }
+      connectInstance(entry.descriptor, read);
+      chosen.push_back(entry.grid);
+    }
+    return chosen;
+  }
+
+  // A stream's grids are read one after the other, wanted or not.
+  openvdb::GridPtrVec read_in_turn(std::istream& stream, std::int32_t num_grids, const GridFilter& is_wanted) const {
+    NamedGridMap read;
+    openvdb::GridPtrVec chosen;
+    for (std::int32_t i = 0; i < num_grids; ++i) {
+      const Entry entry = read_entry(stream);
+      readGrid(entry.grid, entry.descriptor, stream);
+      read[entry.descriptor.uniqueName()] = entry.grid;
+      connectInstance(entry.descriptor, read);
+      const std::string name = openvdb::io::GridDescriptor::nameAsString(entry.descriptor.uniqueName());
+      if (!is_wanted || is_wanted(name)) chosen.push_back(entry.grid);
+    }
+    return chosen;
   }
 };
 
@@ -114,13 +196,12 @@ bool is_known_to_be_whole(const std::filesystem::path& path) {
   throw IoError::malformed(path, "is damaged: its content does not match its checksum");
 }
 
-openvdb::GridPtrVec read_some(openvdb::io::File& file, const GridFilter& is_wanted) {
-  openvdb::GridPtrVec grids;
-  for (auto name = file.beginName(); name != file.endName(); ++name) {
-    // Of several grids of one name, OpenVDB calls the second "name[1]".
-    if (is_wanted(name.gridName())) grids.push_back(file.readGrid(name.gridName()));
-  }
-  return grids;
+VdbContent read_grids(const std::filesystem::path& path, const GridFilter& is_wanted) {
+  auto stream_metadata = std::make_shared<openvdb::io::StreamMetadata>();
+  std::ifstream stream = open_for_reading(path);
+  stream.exceptions(std::ios::badbit | std::ios::failbit);
+  openvdb::io::setStreamMetadataPtr(stream, stream_metadata);
+  return SeekableArchive().read_from(stream, is_wanted);
 }
 
 }  // namespace
@@ -130,12 +211,9 @@ VdbContent read_vdb(const std::filesystem::path& path, const GridFilter& is_want
   const bool is_whole = is_known_to_be_whole(path);
   openvdb::initialize();
   try {
-    openvdb::io::File file(path.string());
-    file.open(/*delayLoad=*/false);
-    VdbContent content;
-    content.grids = is_wanted ? read_some(file, is_wanted) : *file.getGrids();
-    content.metadata = file.getMetadata();
-    return content;
+    return read_grids(path, is_wanted);
+  } catch (const std::ios_base::failure&) {
+    throw IoError::malformed(path, "is damaged: a grid goes on beyond the end of the file");
   } catch (const std::exception& error) {  // damage also ends in bad_alloc, and in messages of kilobytes
     if (is_whole && dynamic_cast<const std::bad_alloc*>(&error)) throw;
     constexpr std::size_t kMaxMessage = 80;

@@ -20,8 +20,9 @@ constexpr std::uint32_t kCompressionFlagsSince = 222;  // of every grid
 // A file read from place to place; whatever would leave it throws.
 class Walker {
  public:
-  explicit Walker(const std::filesystem::path& path) : path_(path), stream_(path, std::ios::binary) {
-    if (std::filesystem::is_directory(path)) throw IoError::system(path, "cannot read", EISDIR);
+  explicit Walker(const std::filesystem::path& path) : path_(path) {
+    check_regular_file(path);
+    stream_.open(path, std::ios::binary);
     if (!stream_) throw IoError::system(path, "cannot open", errno);
     size_ = std::filesystem::file_size(path);
   }
@@ -106,14 +107,17 @@ VdbGridOutline read_grid(Walker& walker, std::uint32_t version) {
   const std::string unique_name = walker.counted_text();
   grid.name = unique_name.substr(0, unique_name.find('\x1e'));  // a number follows where names repeat
   grid.type = walker.counted_text();
-  walker.skip_counted();  // the grid whose tree it shares
+  grid.shares_tree = !walker.counted_text().empty();  // the grid whose tree it is
   const auto begin = walker.number<std::uint64_t>();
   const auto blocks = walker.number<std::uint64_t>();
   const auto end = walker.number<std::uint64_t>();
-  if (begin < walker.offset() || blocks < begin || end < blocks) walker.fail("the offsets of a grid run backwards");
+  // A grid that shares its tree has none of its own in the file, and so no offset of it.
+  const bool is_ordered = grid.shares_tree ? begin <= end : begin <= blocks && blocks <= end;
+  if (begin < walker.offset() || !is_ordered) walker.fail("the offsets of a grid run backwards");
   walker.seek(begin);
   if (version >= kCompressionFlagsSince) grid.compression = walker.number<std::uint32_t>();
   skip_metadata(walker);
+  walker.skip_counted();  // the type of the transform
   walker.seek(end);
   return grid;
 }

@@ -12,6 +12,7 @@ namespace vdbmap {
 struct VdbGridOutline {
   std::string name;
   std::string type;               ///< of the tree, as OpenVDB names it: "Tree_float_5_4_3"
+  bool shares_tree = false;       ///< it is an instance: its voxels are those of another grid of the file
   std::uint32_t compression = 0;  ///< flags of openvdb::io; since file version 222
 };
 

@@ -55,6 +55,19 @@ TEST_F(VdbFile, OnlyGridsThatAreWantedAreRead) {
   EXPECT_TRUE(none.metadata->getMetadata<openvdb::StringMetadata>("author"));
 }
 
+// OpenVDB writes a tree that several grids share once, and the others without an offset of it.
+TEST_F(VdbFile, GridsThatShareATreeAreAllRead) {
+  const auto density = openvdb::FloatGrid::create();
+  density->setName("density");
+  density->fill({openvdb::Coord(0), openvdb::Coord(9)}, 1.0F);
+  const auto heat = density->copy();
+  heat->setName("heat");
+  openvdb::io::File(folder_ / "a.vdb").write(openvdb::GridCPtrVec{density, heat});
+  EXPECT_EQ(sizes_of(read_vdb(folder_ / "a.vdb")), (std::vector<openvdb::Index64>{1000, 1000}));
+  const auto is_heat = [](const std::string& name) { return name == "heat"; };
+  EXPECT_EQ(sizes_of(read_vdb(folder_ / "a.vdb", is_heat)), (std::vector<openvdb::Index64>{1000}));
+}
+
 TEST_F(VdbFile, GridsOfOneNameAreAllRead) {
   write({"voxels", "density", "voxels"});
   const VdbContent content =
