@@ -20,6 +20,58 @@ std::from_chars_result parse_whole(std::string_view word, T& value) {
   return result;
 }
 
+// A character at the front of a text.
+struct Character {
+  std::size_t size;  // [bytes]
+  char32_t code;     // where it is valid
+  bool is_valid;     // UTF-8 (RFC 3629)
+};
+
+// Of more than one byte: none is overlong, a half of a pair or beyond the last code.
+Character long_character(std::string_view text, std::size_t size, char32_t lead, char32_t least) {
+  if (text.size() < size) return {1, 0, false};
+  char32_t code = lead;
+  for (std::size_t i = 1; i < size; ++i) {
+    const auto byte = static_cast<unsigned char>(text[i]);
+    if ((byte & 0xc0) != 0x80) return {1, 0, false};
+    code = code << 6 | (byte & 0x3fU);
+  }
+  const bool is_valid = code >= least && code <= 0x10ffff && (code < 0xd800 || code > 0xdfff);
+  return is_valid ? Character{size, code, true} : Character{1, 0, false};
+}
+
+Character first_character(std::string_view text) {
+  const auto lead = static_cast<unsigned char>(text.front());
+  if (lead < 0x80) return {1, lead, true};
+  if ((lead & 0xe0) == 0xc0) return long_character(text, 2, lead & 0x1fU, 0x80);
+  if ((lead & 0xf0) == 0xe0) return long_character(text, 3, lead & 0x0fU, 0x800);
+  if ((lead & 0xf8) == 0xf0) return long_character(text, 4, lead & 0x07U, 0x10000);
+  return {1, 0, false};
+}
+
+bool is_control(char32_t code) {
+  const bool turns_direction = code == 0x061c || code == 0x200e || code == 0x200f ||
+                               (code >= 0x202a && code <= 0x202e) || (code >= 0x2066 && code <= 0x2069);
+  return code < 0x20 || (code >= 0x7f && code < 0xa0) || code == 0x2028 || code == 0x2029 || turns_direction;
+}
+
+// The text with replacement(character) in the place of each control character and each byte that is no UTF-8.
+template <typename Replacement>
+std::string replace_controls(std::string_view text, const Replacement& replacement) {
+  std::string result;
+  result.reserve(text.size());
+  while (!text.empty()) {
+    const Character character = first_character(text);
+    if (character.is_valid && !is_control(character.code)) {
+      result += text.substr(0, character.size);
+    } else {
+      result += replacement(character);
+    }
+    text.remove_prefix(character.size);
+  }
+  return result;
+}
+
 }  // namespace
 
 std::string_view next_word(std::string_view& rest) {
@@ -67,6 +119,24 @@ std::optional<std::uint64_t> parse_count(std::string_view word) {
   std::uint64_t value = 0;
   if (parse_whole(word, value).ec != std::errc()) return std::nullopt;
   return value;
+}
+
+std::string printable(std::string_view text) {
+  return replace_controls(text, [](const Character&) { return "?"; });
+}
+
+std::string printable_lines(std::string_view text) {
+  return replace_controls(text, [](const Character& c) { return c.is_valid && c.code == '\n' ? "\n" : "?"; });
+}
+
+std::string with_escaped_controls(std::string_view json) {
+  return replace_controls(json, [](const Character& c) -> std::string {
+    if (!c.is_valid) return "?";
+    if (c.code < 0x20) return std::string(1, static_cast<char>(c.code));  // between the values
+    std::string escape = "\\u0000";
+    for (std::size_t i = 0; i < 4; ++i) escape[5 - i] = "0123456789abcdef"[c.code >> (4 * i) & 15];
+    return escape;
+  });
 }
 
 std::string quoted(std::string_view text) {

@@ -29,6 +29,17 @@ std::optional<double> parse_number(std::string_view word);
 /// A whole word as a number of things: digits only, below 2^64.
 std::optional<std::uint64_t> parse_count(std::string_view word);
 
+/// Text of foreign origin (names of files, content of files) made fit for a terminal: each control character (C0, DEL,
+/// C1, line and paragraph separators, those that turn the direction of writing) and each byte that is no UTF-8 becomes
+/// '?'.
+std::string printable(std::string_view text);
+
+/// The same for a text of several lines, which stay lines.
+std::string printable_lines(std::string_view text);
+
+/// A JSON text whose strings may hold control characters that JSON allows in them (DEL, C1, ...): those are escaped.
+std::string with_escaped_controls(std::string_view json);
+
 /// Part of a foreign file, made fit for one line of an error message: in quotes, short, printable.
 /// Call it vdbmap::quoted() on a std::string, which would else find std::quoted() too.
 std::string quoted(std::string_view text);

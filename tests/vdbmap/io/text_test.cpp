@@ -45,5 +45,23 @@ TEST(Text, QuotesOneShortPrintableLine) {
             "'0123456789012345678901234567890123456789...'");
 }
 
+TEST(Text, IsPrintableWithoutControlCharacters) {
+  EXPECT_EQ(printable("Straße 7, 大阪, \U0001F6B2 ~"), "Straße 7, 大阪, \U0001F6B2 ~");
+  EXPECT_EQ(printable("x\x1b[31mred\r\n\t\x7f"), "x?[31mred????");
+  EXPECT_EQ(printable(std::string_view("a\0b", 3)), "a?b");
+  EXPECT_EQ(printable("C1 \u009b31m \u0085"), "C1 ?31m ?");
+  EXPECT_EQ(printable("\u2028 \u202e \u2066 \u200f"), "? ? ? ?") << "ends of lines, turns of direction";
+  // RFC 3629: stray and missing continuations, overlong forms, halves of pairs, beyond the last code, no lead at all.
+  EXPECT_EQ(printable("\xff|\x9b|\xc3|\xe4\xbd|\xc0\xaf|\xed\xa0\x80|\xf4\x90\x80\x80|\xf8\x88\x80\x80\x80"),
+            "?|?|?|??|??|???|????|?????");
+}
+
+TEST(Text, LinesStayLinesWherePrintable) { EXPECT_EQ(printable_lines("a\x1b\nb\r\n"), "a?\nb?\n"); }
+
+TEST(Text, JsonKeepsControlCharactersEscaped) {
+  EXPECT_EQ(with_escaped_controls("{\n  \"a\": \"\x7f\u009b\u202e ü\"\n}"),
+            "{\n  \"a\": \"\\u007f\\u009b\\u202e ü\"\n}");
+}
+
 }  // namespace
 }  // namespace vdbmap
