@@ -8,6 +8,7 @@
 
 #include "tools/cli/command.h"
 #include "tools/cli/output.h"
+#include "vdbmap/io/text.h"
 #include "vdbmap/io/vdb/map_check.h"
 
 namespace vdbmap::cli {
@@ -23,31 +24,37 @@ void add_options(CLI::App& app, CheckOptions& options) {
       ->required();
 }
 
-std::string text_of(const std::vector<RuleResult>& results) {
+std::string text_of(const CheckResult& result, const CheckOptions& options) {
   std::string text;
-  for (const RuleResult& result : results) {
-    text += fmt::format("{}  {}{}\n", result.passed ? "passed" : "FAILED", result.name,
-                        result.detail.empty() ? "" : ": " + result.detail);
+  if (!result.is_ours) {
+    text = printable(options.file.string()) + ": not a map of vdbmap, judged by what Blender and Houdini need\n";
+  }
+  for (const RuleResult& rule : result.rules) {
+    text += fmt::format("{}  {}{}\n", rule.passed ? "passed" : "FAILED", rule.name,
+                        rule.detail.empty() ? "" : ": " + printable(rule.detail));
   }
   return text;
 }
 
-nlohmann::ordered_json json_of(const std::vector<RuleResult>& results, const CheckOptions& options) {
+nlohmann::ordered_json json_of(const CheckResult& result, const CheckOptions& options) {
   auto rules = nlohmann::ordered_json::array();
-  for (const RuleResult& result : results) {
-    rules.push_back({{"name", result.name}, {"passed", result.passed}, {"detail", result.detail}});
+  for (const RuleResult& rule : result.rules) {
+    rules.push_back({{"name", rule.name}, {"passed", rule.passed}, {"detail", rule.detail}});
   }
-  return {{"file", options.file.string()}, {"passed", all_passed(results)}, {"rules", rules}};
+  return {{"file", options.file.string()},
+          {"is_map", result.is_ours},
+          {"passed", all_passed(result.rules)},
+          {"rules", rules}};
 }
 
 ExitCode run(const CheckOptions& options, const CommonOptions& common) {
-  const std::vector<RuleResult> results = check_map_file(options.file);
+  const CheckResult result = check_vdb_file(options.file);
   if (common.json) {
-    print_json(json_of(results, options));
+    print_json(json_of(result, options));
   } else {
-    print_result(text_of(results));
+    print_result(text_of(result, options));
   }
-  return all_passed(results) ? ExitCode::kDone : ExitCode::kNo;
+  return all_passed(result.rules) ? ExitCode::kDone : ExitCode::kNo;
 }
 
 }  // namespace

@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <filesystem>
 #include <limits>
 #include <memory>
 #include <sstream>
@@ -12,6 +13,7 @@
 #include "vdbmap/core/error.h"
 #include "vdbmap/io/vdb/channel_codes.h"
 #include "vdbmap/io/vdb/map_grids.h"
+#include "vdbmap/io/vdb/voxels_of_file.h"
 
 namespace vdbmap {
 namespace {
@@ -22,9 +24,6 @@ using openvdb::Int32Grid;
 using openvdb::Vec3SGrid;
 
 constexpr std::string_view kCount = "count";
-
-// A tile is a cube of equal voxels that costs nothing in the file but much here; a city has fewer than these.
-constexpr openvdb::Index64 kMaxVoxelsWithTiles = openvdb::Index64{1} << 27;
 
 std::string text_of(const VoxelIndex& voxel) {
   std::ostringstream text;
@@ -125,9 +124,14 @@ class GridFinder {
                              std::string(kAllowedVoxelSizes));
   }
 
+  // A tile is a cube of equal voxels that costs next to nothing in the file but much here.
   void voxelize(Int32Grid& grid) const {
     if (grid.tree().activeTileCount() == 0) return;
-    if (grid.activeVoxelCount() > kMaxVoxelsWithTiles) fail(grid.getName(), "has tiles that cover too many voxels");
+    const std::uint64_t most = most_voxels_of_file(std::filesystem::file_size(path_));
+    if (grid.activeVoxelCount() > most) {
+      fail(grid.getName(), "has tiles that make " + std::to_string(grid.activeVoxelCount()) +
+                               " voxels of it, a file of its size can hold " + std::to_string(most));
+    }
     grid.tree().voxelizeActiveTiles();
   }
 

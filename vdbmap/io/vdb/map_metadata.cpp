@@ -13,6 +13,8 @@ namespace vdbmap {
 namespace {
 
 constexpr std::array kAnchorNames = {"anchor_x", "anchor_y", "anchor_z"};
+constexpr const char* kCreatorName = "creator";
+constexpr const char* kCreator = "vdbmap";
 constexpr const char* kFormatName = "map_format";
 constexpr const char* kEpsgName = "epsg";
 constexpr const char* kLabelSchemeName = "label_scheme";
@@ -22,7 +24,7 @@ constexpr const char* kLabelSchemeName = "label_scheme";
 openvdb::MetaMap metadata_of_map(const VoxelMap& map) {
   const MapFrame& frame = map.frame;
   openvdb::MetaMap metadata;
-  metadata.insertMeta("creator", openvdb::StringMetadata("vdbmap"));
+  metadata.insertMeta(kCreatorName, openvdb::StringMetadata(kCreator));
   metadata.insertMeta(kFormatName, openvdb::Int32Metadata(kMapFormat));
   for (int axis = 0; axis < 3; ++axis) {
     metadata.insertMeta(kAnchorNames[axis], openvdb::DoubleMetadata(frame.anchor[axis]));
@@ -72,6 +74,11 @@ LabelScheme label_scheme_of_metadata(const openvdb::MetaMap& metadata) {
 
 bool has_map_format(const openvdb::MetaMap& metadata) {
   return metadata.getMetadata<openvdb::Int32Metadata>(kFormatName) != nullptr;
+}
+
+bool is_file_of_vdbmap(const openvdb::MetaMap& metadata) {
+  const auto creator = metadata.getMetadata<openvdb::StringMetadata>(kCreatorName);
+  return has_map_format(metadata) || (creator && creator->value() == kCreator);
 }
 
 }  // namespace vdbmap

@@ -28,4 +28,7 @@ LabelScheme label_scheme_of_metadata(const openvdb::MetaMap& metadata);
 /// Whether the metadata is that of a map of ours.
 bool has_map_format(const openvdb::MetaMap& metadata);
 
+/// Whether the metadata is that of any file of ours, be it damaged.
+bool is_file_of_vdbmap(const openvdb::MetaMap& metadata);
+
 }  // namespace vdbmap

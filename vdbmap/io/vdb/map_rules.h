@@ -1,7 +1,9 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #pragma once
 
+#include <cstddef>
 #include <filesystem>
+#include <initializer_list>
 #include <string>
 #include <vector>
 
@@ -17,12 +19,35 @@ struct CheckedFile {
   VdbOutline outline;
   openvdb::GridPtrVec grids;
   openvdb::MetaMap::Ptr metadata;
+  bool is_ours = false;  ///< a map or its channels; else only what readers of any .vdb file need is asked of it
+};
+
+/// What breaks a rule: the first place and how many there are. Voxels without end may break it, so they are not all
+/// kept.
+class Problems {
+ public:
+  Problems() = default;
+  Problems(std::initializer_list<std::string> texts) {
+    for (const std::string& text : texts) push_back(text);
+  }
+
+  void push_back(const std::string& text) {
+    if (count_++ == 0) first_ = text;
+  }
+
+  bool empty() const { return count_ == 0; }
+  std::size_t size() const { return count_; }
+  const std::string& front() const { return first_; }
+
+ private:
+  std::string first_;
+  std::size_t count_ = 0;
 };
 
 /// What a rule found.
 struct Finding {
-  std::vector<std::string> problems;  ///< none: the rule is kept
-  std::string remark;                 ///< told where the rule is kept
+  Problems problems;   ///< none: the rule is kept
+  std::string remark;  ///< told where the rule is kept
 };
 
 /// Name of a channel and of the level it belongs to: "cov_diag" and "_1m" of "cov_diag_1m".

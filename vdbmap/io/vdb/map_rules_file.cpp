@@ -77,6 +77,7 @@ Finding check_creator(const CheckedFile& file) {
   if (!creator) return {{}, "none"};
   const std::string& name = creator->value();
   if (!name.starts_with("Houdini")) return {{}, name};
+  if (!file.is_ours) return {{}, name + ": Y up, as Blender takes files of Houdini"};
   return {{"creator is '" + name + "': Blender turns files of Houdini as Y up"}, ""};
 }
 
@@ -85,10 +86,12 @@ Finding check_grid_names(const CheckedFile& file) {
   std::set<std::string> names;
   for (const auto& grid : file.grids) {
     const std::string name = grid->getName();
-    if (!is_simple_name(name)) {
+    if (name.empty()) finding.problems.push_back("a grid without a name");
+    if (file.is_ours && !name.empty() && !is_simple_name(name)) {
       finding.problems.push_back("grid name '" + name + "', expected lower case, digits and underscores");
     }
-    if (!names.insert(name).second) finding.problems.push_back("grid name '" + name + "' is there twice");
+    if (!names.insert(name).second)
+      finding.problems.push_back("grid name '" + name + "' is there twice: readers find grids by name");
     finding.remark += (finding.remark.empty() ? "" : ", ") + name;
   }
   return finding;

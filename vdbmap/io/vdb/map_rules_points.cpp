@@ -1,9 +1,12 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include <algorithm>
+#include <cmath>
+#include <cstdint>
 
 #include "vdbmap/io/vdb/map_rules.h"
 #include "vdbmap/io/vdb/standard_grids.h"
 #include "vdbmap/io/vdb/voxel_attributes.h"
+#include "vdbmap/io/vdb/voxel_grid.h"
 
 namespace vdbmap {
 namespace {
@@ -42,7 +45,7 @@ std::size_t num_points(const PointDataGrid& grid) {
   return count;
 }
 
-void check_attributes(const PointDataGrid& grid, Finding& finding) {
+void check_attributes(const PointDataGrid& grid, bool file_is_ours, Finding& finding) {
   const auto* descriptor = descriptor_of(grid);
   if (!descriptor) return;
   const std::string place = "grid '" + grid.getName() + "' ";
@@ -54,8 +57,30 @@ void check_attributes(const PointDataGrid& grid, Finding& finding) {
                                  ", expected vec3s");
     }
     const bool has_upper_case = std::ranges::any_of(name, [](char c) { return c >= 'A' && c <= 'Z'; });
-    if (!is_bound && has_upper_case) finding.problems.push_back(place + "has attribute '" + name + "' in upper case");
+    if (file_is_ours && !is_bound && has_upper_case)
+      finding.problems.push_back(place + "has attribute '" + name + "' in upper case");
   }
+}
+
+// Whether each point of the leaf has a position. Offsets of a broken file may lead anywhere, and promise more points
+// than the leaf has voxels.
+bool has_positions(const PointLeaf& leaf) {
+  constexpr std::uint64_t kMostPoints =
+      std::uint64_t{PointLeaf::SIZE} * kVoxelsPerCell * kVoxelsPerCell * kVoxelsPerCell;
+  const points::AttributeArray* positions = leaf.attributeSet().getConst("P");
+  if (!positions || positions->valueType() != "vec3s" || positions->size() != leaf.getLastValue()) return false;
+  openvdb::Index before = 0;
+  for (openvdb::Index cell = 0; cell < PointLeaf::SIZE; ++cell) {
+    const openvdb::Index end = leaf.getValue(cell);
+    if (end < before) return false;
+    before = end;
+  }
+  return before <= kMostPoints;
+}
+
+bool is_index(const openvdb::Vec3d& place) {
+  constexpr double kLimit = 1 << 30;
+  return std::abs(place.x()) < kLimit && std::abs(place.y()) < kLimit && std::abs(place.z()) < kLimit;  // not NaN
 }
 
 // Whether the points of a grid and the voxels of its fog are the same places in the world.
@@ -79,12 +104,16 @@ class KnownPointCheck {
 
  private:
   void check_leaf(const PointLeaf& leaf) {
+    if (!has_positions(leaf)) {
+      ++num_outside_;
+      return;
+    }
     const points::AttributeHandle<openvdb::Vec3f> positions(leaf.constAttributeArray("P"));
     for (auto point = leaf.beginIndexOn(); point; ++point) {
       const openvdb::Vec3d in_cell = openvdb::Vec3d(positions.get(*point)) * kShrink;
       const openvdb::Vec3d in_world = voxels_.indexToWorld(point.getCoord().asVec3d() + in_cell);
-      const openvdb::Coord voxel = openvdb::Coord::round(density_.worldToIndex(in_world));
-      if (!fog_.isValueOn(voxel)) ++num_outside_;
+      const openvdb::Vec3d in_fog = density_.worldToIndex(in_world);
+      if (!is_index(in_fog) || !fog_.isValueOn(openvdb::Coord::round(in_fog))) ++num_outside_;
     }
   }
 
@@ -125,7 +154,7 @@ Finding check_density_and_color(const CheckedFile& file) {
 
 Finding check_point_attributes(const CheckedFile& file) {
   Finding finding;
-  for (const PointDataGrid::ConstPtr& grid : point_grids(file)) check_attributes(*grid, finding);
+  for (const PointDataGrid::ConstPtr& grid : point_grids(file)) check_attributes(*grid, file.is_ours, finding);
   return finding;
 }
 

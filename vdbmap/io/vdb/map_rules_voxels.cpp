@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include <algorithm>
 #include <cmath>
+#include <iomanip>
 #include <sstream>
 
 #include "vdbmap/io/vdb/channel_codes.h"
@@ -36,7 +37,9 @@ void find_infinite(const openvdb::points::AttributeArray& array, const std::stri
   const auto [type, codec] = Array::attributeType();
   if (array.valueType() != type || array.codecType() != codec) return;
   const CodeReader<Array> values(array);
-  for (openvdb::Index i = 0; i < array.size(); ++i) {
+  // One value may stand for any number of points, and takes no room for them in the file.
+  const openvdb::Index num_values = array.isUniform() ? std::min<openvdb::Index>(array.size(), 1) : array.size();
+  for (openvdb::Index i = 0; i < num_values; ++i) {
     if (!is_finite(values[i])) finding.problems.push_back(place + "a point's attribute is not finite");
   }
 }
@@ -59,17 +62,23 @@ void find_empty_leaves(const Grid& grid, Finding& finding) {
   }
 }
 
+// In voxels; indices of foreign files may be farther apart than an index can say.
+openvdb::Vec3d size_of_box(const GridBase& grid) {
+  const openvdb::CoordBBox box = grid.evalActiveVoxelBoundingBox();
+  return box.max().asVec3d() - box.min().asVec3d() + openvdb::Vec3d(1);
+}
+
 double dense_bytes(const GridBase& grid) {
-  const openvdb::Vec3d size = grid.evalActiveVoxelBoundingBox().dim().asVec3d();
+  const openvdb::Vec3d size = size_of_box(grid);
   return size.x() * size.y() * size.z() * sizeof(float);
 }
 
 std::string size_text(const GridBase& grid) {
-  const openvdb::Coord size = grid.evalActiveVoxelBoundingBox().dim();
+  const openvdb::Vec3d size = size_of_box(grid);
   std::ostringstream text;
-  text.precision(2);
-  text << "'" << grid.getName() << "' becomes a texture of " << size.x() << " x " << size.y() << " x " << size.z()
-       << ", " << dense_bytes(grid) / kGigabyte << " GB, in Blender's viewport";
+  text << "'" << grid.getName() << "' becomes a texture of " << std::llround(size.x()) << " x "
+       << std::llround(size.y()) << " x " << std::llround(size.z()) << ", " << std::setprecision(2)
+       << dense_bytes(grid) / kGigabyte << " GB, in Blender's viewport";
   if (dense_bytes(grid) > kLargeTexture) text << ": show a coarser level or a smaller part there";
   return text.str();
 }

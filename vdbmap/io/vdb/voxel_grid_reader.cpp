@@ -1,5 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include <algorithm>
+#include <cstdint>
+#include <filesystem>
 #include <numeric>
 #include <optional>
 #include <string>
@@ -11,6 +13,7 @@
 #include "vdbmap/io/vdb/map_grids.h"
 #include "vdbmap/io/vdb/voxel_attributes.h"
 #include "vdbmap/io/vdb/voxel_grid.h"
+#include "vdbmap/io/vdb/voxels_of_file.h"
 
 namespace vdbmap {
 namespace {
@@ -52,6 +55,7 @@ class GridReader {
 
   ReadLevel read() {
     check_transform();
+    voxels_.reserve(count_voxels());
     for (auto leaf = grid_.tree().cbeginLeaf(); leaf; ++leaf) {
       if (leaf->getLastValue() > 0) read_leaf(*leaf);
     }
@@ -81,6 +85,34 @@ class GridReader {
     const auto& [value_type, codec] = Array::attributeType();
     if (!array) fail(std::string("lacks attribute '") + name + "' of type " + value_type + ", codec " + codec);
     return CodeReader<Array>(*array);
+  }
+
+  // What the leaves promise, before memory is taken for it.
+  std::size_t count_voxels() const {
+    const std::uint64_t most = most_voxels_of_file(std::filesystem::file_size(path_));
+    std::uint64_t count = 0;
+    for (auto leaf = grid_.tree().cbeginLeaf(); leaf; ++leaf) {
+      check_leaf(*leaf);
+      count += leaf->getLastValue();
+    }
+    if (count > most) {
+      fail("holds " + std::to_string(count) + " voxels, a file of its size at most " + std::to_string(most));
+    }
+    return count;
+  }
+
+  void check_leaf(const PointLeaf& leaf) const {
+    constexpr std::uint64_t kMostVoxels =
+        std::uint64_t{PointLeaf::SIZE} * kVoxelsPerCell * kVoxelsPerCell * kVoxelsPerCell;
+    if (leaf.getLastValue() > kMostVoxels) {
+      fail("has a leaf of " + std::to_string(leaf.getLastValue()) + " points, expected at most one for each of its " +
+           std::to_string(kMostVoxels) + " voxels");
+    }
+    constexpr std::int32_t kMostCells = kIndexLimit / kVoxelsPerCell;
+    const openvdb::Coord& origin = leaf.origin();
+    const bool is_inside = std::min({origin.x(), origin.y(), origin.z()}) >= -kMostCells &&
+                           std::max({origin.x(), origin.y(), origin.z()}) < kMostCells;
+    if (!is_inside) fail("has a voxel beyond the addressable range");
   }
 
   void read_leaf(const PointLeaf& leaf) {
