@@ -6,6 +6,26 @@
 #include <stdexcept>
 
 namespace vdbmap {
+namespace {
+
+constexpr int kMostDecimals = 9;
+
+// `middle` with the fewest decimals with which it is in the same of the equal steps from `anchor` on; a point's step is
+// computed as map building does, from products with whole numbers.
+double with_fewest_decimals(double middle, double anchor, double voxels_per_metre) {
+  const auto step_of = [&](double coordinate) {
+    return std::floor((coordinate * voxels_per_metre - anchor * voxels_per_metre) * kMeanSteps);
+  };
+  const double step = step_of(middle);
+  double scale = 1;
+  for (int decimals = 0; decimals <= kMostDecimals; ++decimals, scale *= 10) {
+    const double rounded = std::round(middle * scale) / scale;
+    if (step_of(rounded) == step) return rounded;
+  }
+  return middle;
+}
+
+}  // namespace
 
 const VoxelLevel* find_level(const VoxelMap& map, double voxel_size) {
   for (const VoxelLevel& level : map.levels) {
@@ -30,8 +50,22 @@ std::optional<Extent> extent(const VoxelMap& map) {
   if (map.levels.empty() || map.finest().size() == 0) return std::nullopt;
   const openvdb::CoordBBox box = map.finest().tree().voxel_box();
   const double size = map.finest().voxel_size();
-  return Extent{map.frame.anchor + corner_of_voxel(box.min(), size),
-                map.frame.anchor + corner_of_voxel(box.max().offsetBy(1), size)};
+  // Sums of tenths are not the tenths themselves: 7.300000000000001 is none of a user's coordinates.
+  const auto in_micrometres = [](const Eigen::Vector3d& point) -> Eigen::Vector3d {
+    return (point.array() * 1e6).round() / 1e6;
+  };
+  return Extent{in_micrometres(map.frame.anchor + corner_of_voxel(box.min(), size)),
+                in_micrometres(map.frame.anchor + corner_of_voxel(box.max().offsetBy(1), size))};
+}
+
+Eigen::Vector3d mean_in_original_system(const MapFrame& frame, const VoxelRecord& record, const VoxelIndex& voxel,
+                                        double voxel_size) {
+  Eigen::Vector3d mean = frame.anchor + mean_of(record, voxel, voxel_size);
+  const double per_metre = voxels_per_metre(voxel_size);
+  for (int axis = 0; axis < 3; ++axis) {
+    mean[axis] = with_fewest_decimals(mean[axis], frame.anchor[axis], per_metre) + 0.0;  // + 0.0 turns -0 into 0
+  }
+  return mean;
 }
 
 bool is_anchor(const Eigen::Vector3d& anchor) {

@@ -47,6 +47,12 @@ struct Extent {
 };
 std::optional<Extent> extent(const VoxelMap& map);
 
+/// The mean of a voxel [m, original system]. A code stands for a small cube of places (6 um at 10 cm); of each
+/// coordinate the one with the fewest decimals is taken that the code stands for: 389012.1 and not 389012.10000305175.
+/// A point there has the same code again.
+Eigen::Vector3d mean_in_original_system(const MapFrame& frame, const VoxelRecord& record, const VoxelIndex& voxel,
+                                        double voxel_size);
+
 /// Whether a map may have this anchor: finite, a whole multiple of 64 m on each axis, and below 1e9 m.
 bool is_anchor(const Eigen::Vector3d& anchor);
 

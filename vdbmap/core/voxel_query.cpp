@@ -27,7 +27,7 @@ VoxelInfo decode(const VoxelMap& map, const VoxelLevel& level, const VoxelIndex&
   info.index = voxel;
   info.voxel_size = level.voxel_size();
   info.count = record.count;
-  info.mean = map.frame.anchor + mean_of(record, voxel, level.voxel_size());
+  info.mean = mean_in_original_system(map.frame, record, voxel, level.voxel_size());
   info.covariance = covariance_of(record);
   info.normal = normal_of(record);
   info.planarity = planarity_of(record);

@@ -38,6 +38,13 @@ void make_las_labels(std::vector<std::uint16_t>& labels, LabelScheme scheme) {
   }
 }
 
+// For formats that keep all digits; LAS rounds to digits of its own, and from the mean itself.
+void make_decimal(std::vector<Eigen::Vector3d>& positions, const VoxelMap& map, const VoxelLevel& level) {
+  parallel_for_each_voxel(level, [&](const VoxelIndex& voxel, std::size_t number) {
+    positions[number] = mean_in_original_system(map.frame, level.records()[number], voxel, level.voxel_size());
+  });
+}
+
 }  // namespace
 
 PointCloud points_of_level(const VoxelMap& map, const VoxelLevel& level) {
@@ -77,7 +84,11 @@ void write_points(const std::filesystem::path& path, const PointCloud& cloud, co
 void export_points(const std::filesystem::path& path, const VoxelMap& map, const VoxelLevel& level) {
   const PointFormat format = export_format(path);
   PointCloud cloud = points_of_level(map, level);
-  if (format == PointFormat::kLas) make_las_labels(cloud.labels, map.label_scheme);
+  if (format == PointFormat::kLas) {
+    make_las_labels(cloud.labels, map.label_scheme);
+  } else {
+    make_decimal(cloud.positions, map, level);
+  }
   write_points(path, cloud, map.frame.epsg);
 }
 

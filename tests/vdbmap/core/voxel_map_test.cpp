@@ -2,6 +2,7 @@
 #include "vdbmap/core/voxel_map.h"
 
 #include <cmath>
+#include <random>
 #include <stdexcept>
 
 #include <gtest/gtest.h>
@@ -26,6 +27,52 @@ TEST(VoxelMap, ExtentIsTheBoxAroundTheVoxels) {
   ASSERT_TRUE(box.has_value());
   EXPECT_TRUE(box->min.isApprox(Eigen::Vector3d(5000.0, -3.1, 7.0), 1e-12));
   EXPECT_TRUE(box->max.isApprox(Eigen::Vector3d(5001.1, -2.9, 7.1), 1e-12));
+}
+
+// Multiples of a millimetre, on borders of voxels too, in a system of seven digits before the point.
+TEST(VoxelMap, MeansOfSinglePointsHaveThePointsDigits) {
+  for (const double voxel_size : {0.05, 0.1, 1.0}) {
+    for (int i = 0; i < 500; ++i) {
+      // Whole numbers divided are the doubles nearest to the decimals.
+      const Eigen::Vector3d point((389'012'000.0 + i) / 1000, (5'804'032'000.0 - 7.0 * i) / 1000,
+                                  (3.0 * i - 1000) / 1000);
+      PointCloud cloud;
+      cloud.positions = {point};
+      BuildOptions options;
+      options.voxel_sizes = {voxel_size};
+      const VoxelMap map = build_map(cloud, options);
+      for_each_voxel(map.finest(), [&](const VoxelIndex& voxel, std::size_t number) {
+        EXPECT_EQ(mean_in_original_system(map.frame, map.finest().records()[number], voxel, voxel_size), point);
+      });
+    }
+  }
+}
+
+TEST(VoxelMap, MeansInTheOriginalSystemMakeTheSameCodesAgain) {
+  MapFrame frame;
+  frame.anchor = Eigen::Vector3d(548'864, 5'804'032, -64);
+  std::mt19937 random(1);
+  std::uniform_int_distribution<int> code(0, kMeanSteps - 1);
+  std::uniform_int_distribution<std::int32_t> index(-20'000, 20'000);
+  for (int i = 0; i < 1000; ++i) {
+    VoxelRecord record;
+    record.count = 1;
+    const VoxelIndex voxel(index(random), index(random), index(random));
+    for (std::uint16_t& c : record.mean_code) c = static_cast<std::uint16_t>(code(random));
+    PointCloud cloud;
+    cloud.positions = {mean_in_original_system(frame, record, voxel, 0.1)};
+    // Half a step is lost at most.
+    EXPECT_LE((cloud.positions[0] - frame.anchor - mean_of(record, voxel, 0.1)).cwiseAbs().maxCoeff(),
+              0.5 * 0.1 / kMeanSteps + 1e-9);
+    BuildOptions options;
+    options.voxel_sizes = {0.1};
+    options.anchor = frame.anchor;
+    const VoxelMap map = build_map(cloud, options);
+    for_each_voxel(map.finest(), [&](const VoxelIndex& found, std::size_t number) {
+      EXPECT_EQ(found, voxel);
+      EXPECT_EQ(map.finest().records()[number].mean_code, record.mean_code);
+    });
+  }
 }
 
 TEST(VoxelMap, TheAnchorIsTheNearestMultipleOf1024Metres) {
