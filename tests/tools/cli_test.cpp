@@ -178,7 +178,7 @@ TEST_F(Evaluate, APipeThatNobodyReadsIsAnError) {
 TEST_F(Evaluate, SignalsEndItWithTheirCode) {
   const std::string fifo = folder_ / "fifo";
   ASSERT_EQ(::mkfifo(fifo.c_str(), 0600), 0);
-  for (const int signal : {SIGINT, SIGTERM}) {
+  for (const int signal : {SIGINT, SIGTERM, SIGHUP}) {
     // Once the pipe can be opened for writing, the command waits in it for its first byte.
     const auto interrupt = [&](pid_t process) {
       int writer = -1;

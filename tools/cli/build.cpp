@@ -233,10 +233,10 @@ ExitCode run(const BuildCommandOptions& options, const CommonOptions& common) {
   std::vector<std::filesystem::path> read_files = files;
   if (options.poses) read_files.push_back(*options.poses);
   if (options.labels) read_files.push_back(*options.labels);
-  check_output(options.output.file, read_files);
+  check_output(options.output.file, kMapKind, read_files);
   std::vector<MapInput> inputs = choose_inputs(list_scans(files, options.read), options.selection, options.poses);
   if (options.labels) add_label_files(inputs, *options.labels);
-  check_output(options.output.file, label_files(inputs));
+  check_output(options.output.file, kMapKind, label_files(inputs));
 
   const MapFromFiles built = build(inputs, checked_options, options, common);
   warn(built, options.label_scheme);

@@ -70,9 +70,9 @@ void add_options(CLI::App& app, EvaluateOptions& options) {
 }
 
 void check_outputs(const EvaluateOptions& options) {
-  for (const std::filesystem::path& output : {options.plot, options.json}) {
-    if (!output.empty()) check_output(output, {options.estimate, options.truth});
-  }
+  const std::vector<std::filesystem::path> inputs = {options.estimate, options.truth};
+  if (!options.plot.empty()) check_output(options.plot, kPictureKind, inputs);
+  if (!options.json.empty()) check_output(options.json, kJsonKind, inputs);
 }
 
 Comparison compare_by_time(const Trajectory& estimate, const Trajectory& truth, const EvaluateOptions& options) {

@@ -65,7 +65,7 @@ void print(const std::filesystem::path& file, std::size_t num_voxels, const Comm
 
 void export_as_points(const ExportCommandOptions& options, const CommonOptions& common) {
   export_format(*options.points);
-  check_output(*options.points, {options.map});
+  check_output(*options.points, kPointsKind, {options.map});
   const VoxelMap map = load_map(options.map);
   const VoxelLevel& level = chosen_level(map, options);
   export_points(*options.points, map, level);
@@ -73,7 +73,7 @@ void export_as_points(const ExportCommandOptions& options, const CommonOptions& 
 }
 
 void export_as_channels(const ExportCommandOptions& options, const CommonOptions& common) {
-  check_output(*options.channels, {options.map});
+  check_output(*options.channels, kMapKind, {options.map});
   const VoxelMap map = load_map(options.map);
   export_channels(*options.channels, map, options.channel_options);
   print(*options.channels, map.finest().size(), common);

@@ -26,7 +26,7 @@ void add_options(CLI::App& app, ImportOptions& options) {
 }
 
 ExitCode run(const ImportOptions& options, const CommonOptions& common) {
-  check_output(options.output.file, {options.channels});
+  check_output(options.output.file, kMapKind, {options.channels});
   const VoxelMap map = import_channels(options.channels);
   save_map(options.output.file, map, options.output.save);
   if (common.json) {

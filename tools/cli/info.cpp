@@ -8,6 +8,7 @@
 #include "tools/cli/command.h"
 #include "tools/cli/map_summary.h"
 #include "tools/cli/output.h"
+#include "vdbmap/io/text.h"
 #include "vdbmap/io/vdb/map_file.h"
 #include "vdbmap/io/vdb/vdb_description.h"
 
@@ -26,15 +27,15 @@ void add_options(CLI::App& app, InfoOptions& options) {
 
 std::string text_of(const TextMetadata& metadata) {
   std::string text;
-  for (const auto& [name, value] : metadata) text += fmt::format("  {}: {}\n", name, value);
+  for (const auto& [name, value] : metadata) text += fmt::format("  {}: {}\n", printable(name), printable(value));
   return text;
 }
 
 std::string text_of(const openvdb::Coord& index) { return fmt::format("{} {} {}", index.x(), index.y(), index.z()); }
 
 std::string text_of(const GridDescription& grid) {
-  std::string text = fmt::format("grid '{}': {}, {}\n  {} active voxels", grid.name, grid.type, grid.grid_class,
-                                 grid.num_active_voxels);
+  std::string text = fmt::format("grid '{}': {}, {}\n  {} active voxels", printable(grid.name), printable(grid.type),
+                                 printable(grid.grid_class), grid.num_active_voxels);
   if (const auto& box = grid.bounding_box) text += ", " + text_of(box->min()) + " to " + text_of(box->max());
   const openvdb::Vec3d& size = grid.voxel_size;
   text += fmt::format("\n  voxel size {:g} x {:g} x {:g}{}\n", size.x(), size.y(), size.z(),
@@ -43,7 +44,7 @@ std::string text_of(const GridDescription& grid) {
 }
 
 std::string text_of(const VdbDescription& description, const std::filesystem::path& file) {
-  std::string text = fmt::format("{}: an OpenVDB file, but not a map of vdbmap\n", file.string());
+  std::string text = fmt::format("{}: an OpenVDB file, but not a map of vdbmap\n", printable(file.string()));
   text += text_of(description.metadata);
   for (const GridDescription& grid : description.grids) text += text_of(grid);
   return text;
@@ -77,7 +78,7 @@ void tell_map(const VoxelMap& map, const std::filesystem::path& file, const Comm
   if (common.json) {
     print_json(json_of_map(map, file));
   } else {
-    print_result(file.string() + ": a map of vdbmap\n" + text_of_map(map, file));
+    print_result(printable(file.string()) + ": a map of vdbmap\n" + text_of_map(map, file));
   }
 }
 

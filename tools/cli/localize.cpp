@@ -94,10 +94,10 @@ void check_outputs(const LocalizeCommandOptions& options, const std::vector<std:
   inputs.push_back(options.map);
   if (options.initial) inputs.push_back(*options.initial);
   if (options.odometry) inputs.push_back(*options.odometry);
-  check_output(options.output, inputs);
+  check_output(options.output, kPosesKind, inputs);
   if (!options.report) return;
   inputs.push_back(options.output);
-  check_output(*options.report, inputs);
+  check_output(*options.report, kJsonKind, inputs);
 }
 
 std::vector<ScanPlace> choose_scans(const std::vector<std::filesystem::path>& files, const ScanSelection& selection,

@@ -1,6 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include <algorithm>
-#include <cctype>
 #include <exception>
 #include <new>
 #include <sstream>
@@ -22,10 +21,7 @@ namespace {
 
 constexpr const char* kVersion = "vdbmap " VDBMAP_VERSION;
 
-ExitCode fail(ExitCode code, std::string message) {
-  // A file name may hold anything; the message stays one line.
-  std::replace_if(
-      message.begin(), message.end(), [](unsigned char c) { return std::iscntrl(c) != 0; }, ' ');
+ExitCode fail(ExitCode code, const std::string& message) {
   spdlog::error(message);
   return code;
 }

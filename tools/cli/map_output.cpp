@@ -33,13 +33,15 @@ void add_map_output(CLI::App& app, MapOutput& output) {
       ->capture_default_str();
 }
 
-void check_output(const std::filesystem::path& output, const std::vector<std::filesystem::path>& inputs) {
+void check_output(const std::filesystem::path& output, const OutputKind& kind,
+                  const std::vector<std::filesystem::path>& inputs) {
   for (const std::filesystem::path& input : inputs) {
     std::error_code missing;
     if (std::filesystem::equivalent(output, input, missing)) {
       throw std::invalid_argument(output.string() + ": is an input too, choose another output");
     }
   }
+  check_ending(output, kind);
   check_writable(output);
 }
 

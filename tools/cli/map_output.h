@@ -6,6 +6,7 @@
 
 #include <CLI/App.hpp>
 
+#include "tools/cli/output_ending.h"
 #include "vdbmap/io/vdb/map_file.h"
 
 namespace vdbmap::cli {
@@ -19,8 +20,9 @@ struct MapOutput {
 /// Declares --output and --density.
 void add_map_output(CLI::App& app, MapOutput& output);
 
-/// Before the work: throws std::invalid_argument where the output is one of the inputs, IoError where it cannot be
-/// written.
-void check_output(const std::filesystem::path& output, const std::vector<std::filesystem::path>& inputs);
+/// Before the work: throws std::invalid_argument where the output's name stands for another format or is that of one of
+/// the inputs, IoError where it cannot be written.
+void check_output(const std::filesystem::path& output, const OutputKind& kind,
+                  const std::vector<std::filesystem::path>& inputs);
 
 }  // namespace vdbmap::cli

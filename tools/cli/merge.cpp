@@ -70,7 +70,7 @@ VoxelMap merge_files(const std::vector<std::filesystem::path>& files, const Comm
 
 ExitCode run(const MergeOptions& options, const CommonOptions& common) {
   if (options.maps.size() < 2) throw std::invalid_argument("merge needs two maps or more");
-  check_output(options.output.file, options.maps);
+  check_output(options.output.file, kMapKind, options.maps);
   const VoxelMap merged = merge_files(options.maps, common);
   save_map(options.output.file, merged, options.output.save);
   if (common.json) {

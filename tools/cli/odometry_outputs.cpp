@@ -11,6 +11,7 @@
 #include "vdbmap/core/cloud_append.h"
 #include "vdbmap/core/error.h"
 #include "vdbmap/io/map_export.h"
+#include "vdbmap/io/output_path.h"
 #include "vdbmap/io/vdb/map_file.h"
 
 namespace vdbmap::cli {
@@ -26,15 +27,20 @@ BuildOptions map_options() {
 
 void OdometryOutputs::check(const std::vector<std::filesystem::path>& inputs) const {
   if (combined) export_format(*combined);
-  std::vector<std::filesystem::path> outputs = {poses};
-  if (combined) outputs.push_back(*combined);
-  if (map) outputs.push_back(*map);
+  std::vector<std::pair<std::filesystem::path, OutputKind>> outputs = {{poses, kPosesKind}};
+  if (combined) outputs.emplace_back(*combined, kPointsKind);
+  if (map) outputs.emplace_back(*map, kMapKind);
+  const auto place = [](const std::filesystem::path& path) {
+    return std::filesystem::weakly_canonical(follow_links(path));
+  };
   for (std::size_t i = 0; i < outputs.size(); ++i) {
+    const auto& [path, kind] = outputs[i];
     for (std::size_t j = 0; j < i; ++j) {
-      if (std::filesystem::weakly_canonical(outputs[i]) != std::filesystem::weakly_canonical(outputs[j])) continue;
-      throw std::invalid_argument(outputs[i].string() + ": two outputs go to this file");
+      if (place(path) == place(outputs[j].first)) {
+        throw std::invalid_argument(path.string() + ": two outputs go to this file");
+      }
     }
-    check_output(outputs[i], inputs);
+    check_output(path, kind, inputs);
   }
 }
 

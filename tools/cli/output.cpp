@@ -9,23 +9,26 @@
 
 #include "vdbmap/core/error.h"
 #include "vdbmap/io/atomic_file.h"
+#include "vdbmap/io/text.h"
 
 namespace vdbmap::cli {
 namespace {
 
-// A path need not be UTF-8; JSON must be.
+// A path need not be UTF-8; JSON must be. And it may end up on a terminal.
 std::string text_of(const nlohmann::ordered_json& result) {
-  return result.dump(2, ' ', false, nlohmann::ordered_json::error_handler_t::replace) + "\n";
+  return with_escaped_controls(result.dump(2, ' ', false, nlohmann::ordered_json::error_handler_t::replace)) + "\n";
 }
 
-}  // namespace
-
-void print_result(std::string_view text) {
+void write_to_stdout(std::string_view text) {
   const bool written = std::fwrite(text.data(), 1, text.size(), stdout) == text.size();
   if (!written || std::fflush(stdout) != 0) throw IoError::system("standard output", "cannot write", errno);
 }
 
-void print_json(const nlohmann::ordered_json& result) { print_result(text_of(result)); }
+}  // namespace
+
+void print_result(std::string_view text) { write_to_stdout(printable_lines(text)); }
+
+void print_json(const nlohmann::ordered_json& result) { write_to_stdout(text_of(result)); }
 
 void write_json(const std::filesystem::path& path, const nlohmann::ordered_json& result) {
   write_file(path, text_of(result));

@@ -8,7 +8,8 @@
 
 namespace vdbmap::cli {
 
-/// Writes a result to stdout. Throws IoError (system) where it cannot: a full disk, a pipe that nobody reads.
+/// Writes a result of one or several lines to stdout, '?' for each control character in it. Throws IoError (system)
+/// where it cannot: a full disk, a pipe that nobody reads.
 void print_result(std::string_view text);
 
 /// Writes a result to stdout as indented JSON and a newline; numbers that are not finite become null.

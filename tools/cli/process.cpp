@@ -3,12 +3,17 @@
 
 #include <csignal>
 #include <cstdlib>
+#include <ctime>
 #include <exception>
+#include <memory>
 #include <new>
+#include <string>
 #include <string_view>
 #include <system_error>
+#include <utility>
 
 #include <fcntl.h>
+#include <spdlog/pattern_formatter.h>
 #include <spdlog/sinks/stdout_sinks.h>
 #include <spdlog/spdlog.h>
 #include <unistd.h>
@@ -16,14 +21,15 @@
 #include "tools/cli/exit_code.h"
 #include "vdbmap/io/atomic_file.h"
 #include "vdbmap/io/atomic_folder.h"
+#include "vdbmap/io/text.h"
 
 namespace vdbmap::cli {
 namespace {
 
 void handle_signals() {
-  std::signal(SIGINT, stop_at_once);
-  std::signal(SIGTERM, stop_at_once);
+  handle_ending_signals(stop_at_once);
   std::signal(SIGPIPE, SIG_IGN);
+  std::signal(SIGXFSZ, SIG_IGN);
 }
 
 // Opened for reading only, so that writing to a stream that was closed still fails.
@@ -63,10 +69,23 @@ std::terminate_handler default_terminate_handler = nullptr;
   std::abort();
 }
 
+// A message quotes names and contents of files, which may hold anything: it stays one line of text.
+class PrintableMessage : public spdlog::custom_flag_formatter {
+ public:
+  void format(const spdlog::details::log_msg& message, const std::tm& /*time*/, spdlog::memory_buf_t& line) override {
+    const std::string text = printable({message.payload.data(), message.payload.size()});
+    line.append(text.data(), text.data() + text.size());
+  }
+  std::unique_ptr<custom_flag_formatter> clone() const override { return std::make_unique<PrintableMessage>(); }
+};
+
 void log_to_stderr() {
   spdlog::set_default_logger(spdlog::stderr_logger_mt("vdbmap"));
+  auto formatter = std::make_unique<spdlog::pattern_formatter>();
   // On a terminal a progress line may stand where the message goes.
-  spdlog::set_pattern(::isatty(STDERR_FILENO) == 1 ? "\r\033[Kvdbmap: %v" : "vdbmap: %v");
+  formatter->add_flag<PrintableMessage>('*').set_pattern(::isatty(STDERR_FILENO) == 1 ? "\r\033[Kvdbmap: %*"
+                                                                                      : "vdbmap: %*");
+  spdlog::set_formatter(std::move(formatter));
   spdlog::set_error_handler([](const std::string&) {});  // stderr is closed or full: there is nobody left to tell
 }
 
@@ -76,6 +95,11 @@ void stop_at_once(int signal) {
   remove_unfinished_files();
   remove_unfinished_folders();
   ::_exit(128 + signal);
+}
+
+void handle_ending_signals(void (*handler)(int)) {
+  for (const int signal : {SIGINT, SIGTERM, SIGQUIT, SIGXCPU}) std::signal(signal, handler);
+  if (std::signal(SIGHUP, handler) == SIG_IGN) std::signal(SIGHUP, SIG_IGN);
 }
 
 void prepare_process() {

@@ -141,7 +141,7 @@ void check_inputs(const RenderCommandOptions& options) {
   std::vector<std::filesystem::path> inputs = {options.map};
   inputs.insert(inputs.end(), options.trajectories.begin(), options.trajectories.end());
   inputs.insert(inputs.end(), options.points.begin(), options.points.end());
-  check_output(options.output, inputs);
+  check_output(options.output, kPictureKind, inputs);
 }
 
 void check_not_empty(const VoxelMap& map, const std::filesystem::path& path) {

@@ -2,7 +2,6 @@
 #include "tools/cli/stop_request.h"
 
 #include <atomic>
-#include <csignal>
 
 #include "tools/cli/process.h"
 
@@ -20,14 +19,10 @@ void note_signal(int signal) {
 
 StopRequest::StopRequest() {
   noted_signal = 0;
-  std::signal(SIGINT, note_signal);
-  std::signal(SIGTERM, note_signal);
+  handle_ending_signals(note_signal);
 }
 
-StopRequest::~StopRequest() {
-  std::signal(SIGINT, stop_at_once);
-  std::signal(SIGTERM, stop_at_once);
-}
+StopRequest::~StopRequest() { handle_ending_signals(stop_at_once); }
 
 bool StopRequest::is_made() const { return noted_signal != 0; }
 

@@ -5,8 +5,9 @@
 
 namespace vdbmap::cli {
 
-/// While it lives, the first Ctrl-C or SIGTERM ends nothing by itself but is noted here, for work that has something to
-/// save. A second one ends the process at once, as ever. One at a time may live.
+/// While it lives, the first signal that would end the process (Ctrl-C, SIGTERM, a closed terminal) ends nothing by
+/// itself but is noted here, for work that has something to save. A second one ends the process at once, as ever. One
+/// at a time may live.
 class StopRequest {
  public:
   StopRequest();
