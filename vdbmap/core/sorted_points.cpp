@@ -151,14 +151,6 @@ void add_point(VoxelSums& sums, const KeyedPoint& point) {
   sums.product[5] += y * z;
 }
 
-// Beyond these an intensity is damage, and would overflow the sum: it does not count.
-void add_intensity(VoxelSums& sums, double intensity) {
-  constexpr double kLimit = 1e7;
-  if (!(std::abs(intensity) <= kLimit)) return;
-  ++sums.num_with_intensity;
-  sums.intensity += std::llround(intensity * 65536.0);
-}
-
 void add_color(VoxelSums& sums, const Rgb16& color, std::span<const std::uint16_t> linear) {
   sums.color[0] += linear[color.r];
   sums.color[1] += linear[color.g];

@@ -2,6 +2,7 @@
 #include "vdbmap/core/voxel_sums.h"
 
 #include <algorithm>
+#include <cmath>
 #include <limits>
 
 namespace vdbmap {
@@ -19,6 +20,19 @@ double centered(const VoxelSums& sums, int product) {
   return static_cast<double>(n_product - sum_product);
 }
 
+constexpr std::int64_t kIntensityCarry = std::int64_t{1} << 62;
+
+// Two sums that are carried, and one and an intensity, add up without overflow.
+void carry_intensity(VoxelSums& sums) {
+  if (sums.intensity >= kIntensityCarry / 2) {
+    sums.intensity -= kIntensityCarry;
+    ++sums.intensity_carry;
+  } else if (sums.intensity < -kIntensityCarry / 2) {
+    sums.intensity += kIntensityCarry;
+    --sums.intensity_carry;
+  }
+}
+
 }  // namespace
 
 void VoxelSums::add(const VoxelSums& other) {
@@ -29,6 +43,8 @@ void VoxelSums::add(const VoxelSums& other) {
   for (int i = 0; i < 3; ++i) color[i] += other.color[i];
   num_with_intensity += other.num_with_intensity;
   intensity += other.intensity;
+  intensity_carry += other.intensity_carry;
+  carry_intensity(*this);
 }
 
 VoxelRecord record_of(const VoxelSums& sums, double voxel_size) {
@@ -56,10 +72,17 @@ VoxelRecord record_of(const VoxelSums& sums, double voxel_size) {
   return record;
 }
 
+void add_intensity(VoxelSums& sums, double intensity) {
+  if (!(std::abs(intensity) <= kLargestIntensity)) return;
+  ++sums.num_with_intensity;
+  sums.intensity += std::llround(intensity * 65536.0);
+  carry_intensity(sums);
+}
+
 float intensity_of(const VoxelSums& sums) {
   if (sums.num_with_intensity == 0) return 0;
-  return static_cast<float>(static_cast<double>(sums.intensity) /
-                            (65536.0 * static_cast<double>(sums.num_with_intensity)));
+  const Int128 sum = static_cast<Int128>(sums.intensity_carry) * kIntensityCarry + sums.intensity;
+  return static_cast<float>(static_cast<double>(sum) / (65536.0 * static_cast<double>(sums.num_with_intensity)));
 }
 
 }  // namespace vdbmap
