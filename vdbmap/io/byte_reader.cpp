@@ -61,6 +61,12 @@ std::string read_front(const std::filesystem::path& path, std::uint64_t count) {
   return front;
 }
 
+char line_end_of(std::string_view text) {
+  const std::size_t at = text.find_first_of("\r\n");
+  const bool is_bare_return = at != std::string_view::npos && text[at] == '\r' && text.substr(at + 1, 1) != "\n";
+  return is_bare_return ? '\r' : '\n';
+}
+
 ByteReader::ByteReader(std::filesystem::path path) : path_(std::move(path)) {
   const Descriptor file(path_);
   size_ = size_of_regular_file(file, path_);
@@ -88,7 +94,8 @@ std::string_view ByteReader::bytes(std::uint64_t count) {
 std::string_view ByteReader::read_line() {
   if (remaining() == 0) fail("the file ends too early: expected another line");
   const std::string_view rest(data_.get() + offset_, remaining());
-  const std::size_t length = rest.find('\n');
+  if (offset_ == 0) line_end_ = line_end_of(rest);
+  const std::size_t length = rest.find(line_end_);
   std::string_view line = rest.substr(0, length);
   offset_ += length == std::string_view::npos ? rest.size() : length + 1;
   if (line.ends_with('\r')) line.remove_suffix(1);

@@ -41,6 +41,10 @@ std::string read_front(const std::filesystem::path& path, std::uint64_t count);
 /// pipe or a device. For readers that open it themselves.
 void check_regular_file(const std::filesystem::path& path);
 
+/// How the lines of a text end: LF, with or without a CR before it; or CR alone, as on old Macintoshes. The first end
+/// decides.
+char line_end_of(std::string_view text);
+
 /// A file read from front to back. Whatever would leave the file throws IoError with path, offset and reason.
 class ByteReader {
  public:
@@ -69,7 +73,8 @@ class ByteReader {
     return load<T, std::endian::big>(bytes(sizeof(T)).data());
   }
 
-  /// The next line without its LF or CRLF; the last line may lack it. Throws at the end of the file.
+  /// The next line without its LF, CRLF or, where the first line of the file ends so, CR; the last line may lack it.
+  /// Throws at the end of the file.
   std::string_view read_line();
 
   /// Throws IoError: "path: byte OFFSET: reason".
@@ -77,12 +82,16 @@ class ByteReader {
   /// Throws IoError about the line last read: "path:LINE: reason".
   [[noreturn]] void fail_line(const std::string& reason) const;
 
+  /// All bytes of the file, wherever the next read is; the view lives as long as the reader.
+  std::string_view all() const { return {data_.get(), size_}; }
+
  private:
   std::filesystem::path path_;
   std::unique_ptr<char[]> data_;
   std::uint64_t size_ = 0;
   std::uint64_t offset_ = 0;
   std::uint64_t line_ = 0;
+  char line_end_ = '\n';
 };
 
 }  // namespace vdbmap

@@ -2,7 +2,9 @@
 #include "vdbmap/io/text.h"
 
 #include <algorithm>
+#include <cctype>
 #include <charconv>
+#include <limits>
 #include <system_error>
 
 namespace vdbmap {
@@ -72,7 +74,29 @@ std::string replace_controls(std::string_view text, const Replacement& replaceme
   return result;
 }
 
+// What Microsoft's C library once printed: "1.#QNAN", "-1.#IND00", "1.#INF".
+std::optional<double> parse_microsoft_number(std::string_view word) {
+  const bool is_negative = word.starts_with('-');
+  if (is_negative) word.remove_prefix(1);
+  constexpr double kInfinity = std::numeric_limits<double>::infinity();
+  if (word.starts_with("1.#INF")) return is_negative ? -kInfinity : kInfinity;
+  const bool is_nan = word.starts_with("1.#QNAN") || word.starts_with("1.#SNAN") || word.starts_with("1.#IND");
+  return is_nan ? std::optional(std::numeric_limits<double>::quiet_NaN()) : std::nullopt;
+}
+
 }  // namespace
+
+std::string_view without_byte_order_mark(std::string_view text) {
+  constexpr std::string_view kMark = "\xef\xbb\xbf";
+  if (text.starts_with(kMark)) text.remove_prefix(kMark.size());
+  return text;
+}
+
+std::string lower_case(std::string_view text) {
+  std::string lower(text);
+  for (char& c : lower) c = static_cast<char>(std::tolower(static_cast<unsigned char>(c)));
+  return lower;
+}
 
 std::string_view next_word(std::string_view& rest) {
   const auto begin = std::find_if_not(rest.begin(), rest.end(), is_blank);
@@ -107,7 +131,7 @@ std::optional<double> parse_number(std::string_view word) {
   double value = 0;
   const std::from_chars_result result = parse_whole(word, value);
   if (result.ec == std::errc()) return value;
-  if (result.ec != std::errc::result_out_of_range) return std::nullopt;
+  if (result.ec != std::errc::result_out_of_range) return parse_microsoft_number(word);
 
   // 1e999 is infinite and 1e-999 zero in a double; from_chars does not tell which of the two it met.
   long double wide = 0;

@@ -23,7 +23,14 @@ std::string_view read_filled_line(ByteReader& reader);
 /// The words of the next line of a header. Throws IoError for a line above 64 KiB, which binary data may look like.
 std::vector<std::string_view> read_header_words(ByteReader& reader);
 
-/// A whole word as a number: "-1.5", "+2e3", "nan", "inf". Independent of the locale.
+/// A text without the byte-order mark of UTF-8, which some programs write before it.
+std::string_view without_byte_order_mark(std::string_view text);
+
+/// A text in small letters.
+std::string lower_case(std::string_view text);
+
+/// A whole word as a number: "-1.5", "+2e3", "nan", "inf"; Microsoft's "1.#QNAN", "-1.#IND" and "1.#INF" too.
+/// Independent of the locale.
 std::optional<double> parse_number(std::string_view word);
 
 /// A whole word as a number of things: digits only, below 2^64.

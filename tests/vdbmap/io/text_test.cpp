@@ -31,6 +31,15 @@ TEST(Text, ParsesWhatIsNotFiniteOrTooLargeOrTooSmall) {
   EXPECT_EQ(parse_number("-1e-999"), 0.0);
 }
 
+TEST(Text, ParsesWhatMicrosoftPrintedForNumbersThatAreNone) {
+  for (const std::string_view word : {"1.#QNAN", "-1.#IND", "-1.#IND00", "1.#SNAN", "nan(ind)", "-nan"}) {
+    EXPECT_TRUE(std::isnan(parse_number(word).value_or(0))) << word;
+  }
+  EXPECT_EQ(parse_number("1.#INF"), std::numeric_limits<double>::infinity());
+  EXPECT_EQ(parse_number("-1.#INF00"), -std::numeric_limits<double>::infinity());
+  EXPECT_FALSE(parse_number("1.#")) << "and nothing else";
+}
+
 TEST(Text, ParsesCountsUpTo64Bits) {
   EXPECT_EQ(parse_count("18446744073709551615"), std::numeric_limits<std::uint64_t>::max());
   for (const std::string_view word : {"18446744073709551616", "-1", "+1", "1.0", "", "1 "}) {
