@@ -6,6 +6,7 @@
 
 #include "vdbmap/core/error.h"
 #include "vdbmap/io/byte_reader.h"
+#include "vdbmap/io/color_range.h"
 #include "vdbmap/io/coordinate_kind.h"
 #include "vdbmap/io/las.h"
 #include "vdbmap/io/las_header.h"
@@ -50,11 +51,7 @@ std::vector<Rgb16> read_colors(const char* first_record, const LasHeader& header
     const char* color = record + at;
     return Rgb16{load<std::uint16_t>(color), load<std::uint16_t>(color + 2), load<std::uint16_t>(color + 4)};
   });
-  const auto has_8_bits = [](const Rgb16& color) { return std::max({color.r, color.g, color.b}) <= 255; };
-  if (!std::ranges::all_of(colors, has_8_bits)) return colors;
-
-  const auto widened = [](std::uint16_t channel) { return static_cast<std::uint16_t>(channel * 257); };
-  for (Rgb16& color : colors) color = {widened(color.r), widened(color.g), widened(color.b)};
+  scale_colors(colors);
   return colors;
 }
 

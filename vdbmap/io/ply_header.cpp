@@ -38,7 +38,7 @@ PlyElement parse_element(const ByteReader& reader, const Words& words) {
   if (words.size() != 3) reader.fail_line("expected 'element NAME COUNT'");
   const std::optional<std::uint64_t> count = parse_count(words[2]);
   if (!count) reader.fail_line(quoted(words[2]) + " is not a number of elements");
-  return {std::string(words[1]), *count, reader.line(), {}};
+  return {lower_case(words[1]), *count, reader.line(), {}};
 }
 
 PlyProperty parse_property(const ByteReader& reader, const Words& words) {
@@ -55,8 +55,10 @@ PlyProperty parse_property(const ByteReader& reader, const Words& words) {
 }
 
 void read_magic(ByteReader& reader) {
-  const std::string_view first = reader.read_line();
-  if (first != "ply") reader.fail_line("found " + quoted(first) + ", expected 'ply'");
+  const std::string_view first = without_byte_order_mark(reader.read_line());
+  std::string_view rest = first;
+  if (lower_case(next_word(rest)) != "ply" || !next_word(rest).empty())
+    reader.fail_line("found " + quoted(first) + ", expected 'ply'");
 }
 
 }  // namespace
@@ -75,8 +77,10 @@ PlyHeader read_ply_header(ByteReader& reader) {
   read_magic(reader);
   std::optional<PlyHeader::Encoding> encoding;
   std::vector<PlyElement> elements;
+  bool has_16_bit_colors = false;
   while (true) {
     const Words words = read_header_words(reader);
+    has_16_bit_colors = has_16_bit_colors || words == split_words(kPlyComment16Bits);
     if (words.empty() || words[0] == "comment" || words[0] == "obj_info") continue;
     if (words[0] == "end_header") break;
     if (words[0] == "format") {
@@ -90,7 +94,7 @@ PlyHeader read_ply_header(ByteReader& reader) {
     }
   }
   if (!encoding) reader.fail_line("the header states no format");
-  return {*encoding, std::move(elements)};
+  return {*encoding, std::move(elements), has_16_bit_colors};
 }
 
 }  // namespace vdbmap

@@ -4,6 +4,7 @@
 #include <cstdint>
 #include <optional>
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include "vdbmap/io/byte_reader.h"
@@ -33,9 +34,14 @@ struct PlyHeader {
   enum class Encoding { kAscii, kBinaryLittleEndian, kBinaryBigEndian };
   Encoding encoding;
   std::vector<PlyElement> elements;
+  bool has_16_bit_colors = false;  ///< by kPlyComment16Bits: else their scale shows in their values
 };
 
-/// Reads from "ply" to "end_header" and leaves the reader at the first byte of data. Throws IoError with the line.
+/// The comment that keeps a dark picture of 16 bits from being taken for one of 8 bits.
+inline constexpr std::string_view kPlyComment16Bits = "comment colours have 16 bits";
+
+/// Reads from "ply", behind a byte-order mark or not, to "end_header" and leaves the reader at the first byte of data.
+/// Throws IoError with the line.
 PlyHeader read_ply_header(ByteReader& reader);
 
 }  // namespace vdbmap

@@ -1,9 +1,11 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
+#include <algorithm>
 #include <array>
 #include <string>
 
 #include "vdbmap/io/atomic_file.h"
 #include "vdbmap/io/ply.h"
+#include "vdbmap/io/ply_header.h"
 #include "vdbmap/io/point_cloud_check.h"
 #include "vdbmap/io/point_encoder.h"
 
@@ -32,9 +34,17 @@ std::string ply_name(ScalarType type) {
   return kNames[static_cast<std::size_t>(type)];
 }
 
-std::string header_text(const std::vector<OutputField>& fields, std::size_t count, PlyEncoding encoding) {
+// Of 16 bits, but none above 255: readers take it for one of 8 bits.
+bool is_dark(const PointCloud& cloud) {
+  const auto is_small = [](const Rgb16& color) { return std::max({color.r, color.g, color.b}) <= 255; };
+  return !has_8_bit_colors(cloud) && std::ranges::all_of(cloud.colors, is_small);
+}
+
+std::string header_text(const std::vector<OutputField>& fields, const PointCloud& cloud, PlyEncoding encoding) {
   const std::string format = encoding == PlyEncoding::kAscii ? "ascii" : "binary_little_endian";
-  std::string text = "ply\nformat " + format + " 1.0\nelement vertex " + std::to_string(count) + "\n";
+  std::string text = "ply\nformat " + format + " 1.0\n";
+  if (is_dark(cloud)) text += std::string(kPlyComment16Bits) + "\n";
+  text += "element vertex " + std::to_string(cloud.size()) + "\n";
   for (const OutputField& output : fields) text += "property " + ply_name(output.field.type) + " " + output.name + "\n";
   return text + "end_header\n";
 }
@@ -46,7 +56,7 @@ void write_ply(const std::filesystem::path& path, const PointCloud& cloud, PlyEn
   const std::vector<OutputField> fields = choose_output(cloud);
 
   AtomicFile file(path);
-  file.write(header_text(fields, cloud.size(), encoding));
+  file.write(header_text(fields, cloud, encoding));
   if (encoding == PlyEncoding::kAscii) {
     write_text_points(file, cloud, fields);
   } else {

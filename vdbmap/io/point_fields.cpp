@@ -4,10 +4,14 @@
 #include <algorithm>
 #include <array>
 #include <bit>
-#include <cctype>
 #include <cstdint>
+#include <map>
+#include <set>
+#include <stdexcept>
 #include <string_view>
-#include <unordered_map>
+
+#include "vdbmap/io/color_range.h"
+#include "vdbmap/io/text.h"
 
 namespace vdbmap {
 namespace {
@@ -15,74 +19,47 @@ namespace {
 // A block of every column fits into the first-level cache, and so do the records it comes from.
 constexpr std::size_t kPointsAtOnce = 512;
 
-std::optional<FieldRole> find_role(const std::string& name) {
-  static const std::unordered_map<std::string_view, FieldRole> kRoles = {
-      {"x", FieldRole::kX},
-      {"y", FieldRole::kY},
-      {"z", FieldRole::kZ},
-      {"red", FieldRole::kRed},
-      {"r", FieldRole::kRed},
-      {"diffuse_red", FieldRole::kRed},
-      {"green", FieldRole::kGreen},
-      {"g", FieldRole::kGreen},
-      {"diffuse_green", FieldRole::kGreen},
-      {"blue", FieldRole::kBlue},
-      {"b", FieldRole::kBlue},
-      {"diffuse_blue", FieldRole::kBlue},
-      {"rgb", FieldRole::kPackedRgb},
-      {"rgba", FieldRole::kPackedRgb},
-      {"intensity", FieldRole::kIntensity},
-      {"i", FieldRole::kIntensity},
-      {"reflectance", FieldRole::kIntensity},
-      {"reflectivity", FieldRole::kIntensity},
-      {"remission", FieldRole::kIntensity},
-      {"time", FieldRole::kTime},
-      {"timestamp", FieldRole::kTime},
-      {"time_stamp", FieldRole::kTime},
-      {"gps_time", FieldRole::kTime},
-      {"gpstime", FieldRole::kTime},
-      {"t", FieldRole::kTime},
-      {"ring", FieldRole::kRing},
-      {"channel", FieldRole::kRing},
-      {"laser_id", FieldRole::kRing},
-      {"label", FieldRole::kLabel},
-      {"classification", FieldRole::kLabel},
-      {"class", FieldRole::kLabel},
-      {"semantic", FieldRole::kLabel},
-  };
-  const auto found = kRoles.find(name);
-  return found == kRoles.end() ? std::nullopt : std::optional(found->second);
+// The scale of a colour that its type or its name says; nothing where the file's numbers have to.
+std::optional<double> stated_color_scale(const KnownName& name, ScalarType type) {
+  if (name.states_16_bits) return 1.0;
+  return is_integer(type) && size_of(type) == 1 ? std::optional(257.0) : std::nullopt;
 }
 
-std::string normalized(const std::string& name) {
-  std::string lower;
-  for (const char c : name) lower += static_cast<char>(std::tolower(static_cast<unsigned char>(c)));
-  return lower.starts_with("scalar_") ? lower.substr(7) : lower;
-}
-
-bool is_color_channel(FieldRole role) {
-  return role == FieldRole::kRed || role == FieldRole::kGreen || role == FieldRole::kBlue;
-}
-
-double color_scale(ScalarType type) {
-  if (!is_integer(type)) return 65535.0;
-  return size_of(type) == 2 ? 1.0 : 257.0;
+std::optional<PointField> time_field(const NamedField& field, const KnownName& name) {
+  if (name.states_unit || !is_integer(field.type)) return PointField{FieldRole::kTime, field.type, name.unit};
+  return lower_case(field.name) == "t" ? std::optional(PointField{FieldRole::kTime, field.type, 1e-9}) : std::nullopt;
 }
 
 std::optional<PointField> find_point_field(const NamedField& field) {
-  const std::string name = normalized(field.name);
-  const std::optional<FieldRole> role = find_role(name);
-  if (!role) return std::nullopt;
-  if (is_color_channel(*role)) return PointField{*role, field.type, color_scale(field.type)};
-  if (*role == FieldRole::kPackedRgb && size_of(field.type) != 4) return std::nullopt;
-  if (*role == FieldRole::kTime && is_integer(field.type)) {
-    return name == "t" ? std::optional(PointField{*role, field.type, 1e-9}) : std::nullopt;
+  const std::optional<KnownName> name = find_name(field.name);
+  if (!name) return std::nullopt;
+  if (is_color_channel(name->role)) {
+    const std::optional<double> scale = stated_color_scale(*name, field.type);
+    return PointField{name->role, field.type, scale.value_or(1.0), scale.has_value()};
   }
-  return PointField{*role, field.type};
+  if (name->role == FieldRole::kPackedRgb && size_of(field.type) != 4) return std::nullopt;
+  if (name->role == FieldRole::kTime) return time_field(field, *name);
+  return PointField{name->role, field.type, name->unit};
 }
 
 bool has_role(const std::vector<std::optional<PointField>>& fields, FieldRole role) {
   return std::ranges::any_of(fields, [role](const auto& field) { return field && field->role == role; });
+}
+
+// The first set of names that gives all three coordinates.
+std::optional<CoordinateNames> whole_coordinates(const std::vector<NamedField>& fields) {
+  std::map<CoordinateNames, std::set<FieldRole>> found;
+  for (const NamedField& field : fields) {
+    const std::optional<KnownName> name = find_name(field.name);
+    if (name && is_coordinate(name->role)) found[name->coordinates].insert(name->role);
+  }
+  const auto whole = std::ranges::find_if(found, [](const auto& set) { return set.second.size() == 3; });
+  return whole == found.end() ? std::nullopt : std::optional(whole->first);
+}
+
+bool is_of_other_coordinates(const NamedField& field, const std::optional<CoordinateNames>& chosen) {
+  const std::optional<KnownName> name = find_name(field.name);
+  return chosen && name && is_coordinate(name->role) && name->coordinates != *chosen;
 }
 
 // Colour comes from three channels or else from packed ones, never from a part.
@@ -111,13 +88,31 @@ Rgb16 unpack_rgb(double number) {
   return {channel(16), channel(8), channel(0)};
 }
 
+// The columns, with the scale that all of their colours say.
+std::vector<PointColumn> with_color_scale(std::vector<PointColumn> columns, std::size_t num_points) {
+  ColorRange range;
+  std::array<double, kPointsAtOnce> block;
+  for (const PointColumn& column : columns) {
+    if (column.field.scale_is_known) continue;
+    for (std::size_t first = 0; first < num_points; first += kPointsAtOnce) {
+      const std::span<double> numbers(block.data(), std::min(kPointsAtOnce, num_points - first));
+      load_numbers(column.numbers, first, numbers);
+      range.add(numbers);
+    }
+  }
+  for (PointColumn& column : columns) set_color_scale(column.field, range);
+  return columns;
+}
+
 }  // namespace
 
 std::vector<std::optional<PointField>> choose_point_fields(const std::vector<NamedField>& fields) {
+  const std::optional<CoordinateNames> coordinates = whole_coordinates(fields);
   std::vector<std::optional<PointField>> chosen;
   for (const NamedField& field : fields) {
     std::optional<PointField> candidate = find_point_field(field);
-    if (candidate && has_role(chosen, candidate->role)) candidate.reset();
+    const bool is_surplus = candidate && has_role(chosen, candidate->role);
+    if (is_surplus || is_of_other_coordinates(field, coordinates)) candidate.reset();
     chosen.push_back(candidate);
   }
 
@@ -133,6 +128,21 @@ std::optional<std::string> missing_coordinate(const std::vector<std::optional<Po
   if (!has_role(fields, FieldRole::kY)) return "y";
   if (!has_role(fields, FieldRole::kZ)) return "z";
   return std::nullopt;
+}
+
+void check_columns(const std::vector<std::string>& columns) {
+  static constexpr std::array<std::string_view, 6> kPassedOver = {"-", "_", "skip", "nx", "ny", "nz"};
+  std::vector<NamedField> fields;
+  for (const std::string& name : columns) {
+    fields.push_back({name, ScalarType::kFloat64});
+    if (find_name(name) || std::ranges::find(kPassedOver, name) != kPassedOver.end()) continue;
+    throw std::invalid_argument("column " + vdbmap::quoted(name) +
+                                " is unknown, expected x y z r g b r16 g16 b16 intensity time ring label, or - for a "
+                                "column that is passed over");
+  }
+  if (const auto missing = missing_coordinate(choose_point_fields(fields)); missing && !columns.empty()) {
+    throw std::invalid_argument("the columns have no " + *missing);
+  }
 }
 
 PointCloud make_cloud(const std::vector<std::optional<PointField>>& fields, std::size_t count) {
@@ -177,10 +187,11 @@ void store_numbers(PointCloud& cloud, const PointField& field, std::size_t first
 }
 
 void store_columns(PointCloud& cloud, const std::vector<PointColumn>& columns) {
+  const std::vector<PointColumn> scaled = with_color_scale(columns, cloud.size());
   std::array<double, kPointsAtOnce> block;
   for (std::size_t first = 0; first < cloud.size(); first += kPointsAtOnce) {
     const std::span<double> numbers(block.data(), std::min(kPointsAtOnce, cloud.size() - first));
-    for (const PointColumn& column : columns) {
+    for (const PointColumn& column : scaled) {
       load_numbers(column.numbers, first, numbers);
       store_numbers(cloud, column.field, first, numbers);
     }

@@ -8,12 +8,10 @@
 #include <vector>
 
 #include "vdbmap/core/point_cloud.h"
+#include "vdbmap/io/field_names.h"
 #include "vdbmap/io/scalar_type.h"
 
 namespace vdbmap {
-
-/// What a field of a point means to a PointCloud.
-enum class FieldRole { kX, kY, kZ, kRed, kGreen, kBlue, kPackedRgb, kIntensity, kTime, kRing, kLabel };
 
 /// A field as a file declares it.
 struct NamedField {
@@ -24,18 +22,24 @@ struct NamedField {
 /// A field that has a place in a PointCloud.
 struct PointField {
   FieldRole role;
-  ScalarType type;     ///< in the file
-  double scale = 1.0;  ///< the cloud's number = scale * the file's number
+  ScalarType type;             ///< in the file
+  double scale = 1.0;          ///< the cloud's number = scale * the file's number
+  bool scale_is_known = true;  ///< else a colour, whose scale all of the file's colours say: see ColorRange
 };
 
-/// For each field of a file its place in a PointCloud, or nothing. The first of several fields of one role wins.
-/// Names are compared without case and without CloudCompare's "scalar_". Colours: integers of 8 bits are multiplied by
-/// 257, floats run from 0 to 1. Times: floats are seconds; of the integers, whose unit no file states, only Ouster's
-/// "t" is taken, as nanoseconds.
+/// For each field of a file its place in a PointCloud, or nothing. The first of several fields of one role wins; the
+/// coordinates are those of one set of names, if one is whole: x y z before easting northing height. find_name() says
+/// what a name means. Colours: integers of 8 bits are multiplied by 257, r16 g16 b16 taken as they are, the scale of
+/// others is not known yet. Times: floats are seconds unless the name says otherwise; of integers without a unit only
+/// Ouster's "t" is taken, as nanoseconds.
 std::vector<std::optional<PointField>> choose_point_fields(const std::vector<NamedField>& fields);
 
 /// The first of "x", "y", "z" that none of `fields` provides.
 std::optional<std::string> missing_coordinate(const std::vector<std::optional<PointField>>& fields);
+
+/// Throws std::invalid_argument for a name of a column that nothing is known of, and where x, y or z is missing; no
+/// names at all are fine. "-", "_", "skip", "nx", "ny" and "nz" are columns that are passed over.
+void check_columns(const std::vector<std::string>& columns);
 
 /// An empty-handed cloud of `count` points, with the attributes that `fields` provide.
 PointCloud make_cloud(const std::vector<std::optional<PointField>>& fields, std::size_t count);
