@@ -56,6 +56,13 @@ std::vector<std::size_t> places_among_all(std::span<const std::size_t> places, s
   return result;
 }
 
+// Adds places among those that are left without the dropped ones.
+void add_dropped(ReadResult& read, std::span<const std::size_t> places) {
+  const std::vector<std::size_t> added = places_among_all(places, read.dropped);
+  const auto middle = read.dropped.insert(read.dropped.end(), added.begin(), added.end());
+  std::inplace_merge(read.dropped.begin(), middle, read.dropped.end());
+}
+
 }  // namespace
 
 std::vector<std::size_t> drop_non_finite(PointCloud& cloud) {
@@ -67,9 +74,7 @@ std::vector<std::size_t> drop_non_finite(PointCloud& cloud) {
 
 void drop_points(ReadResult& read, std::span<const std::size_t> places) {
   if (places.empty()) return;
-  const std::vector<std::size_t> added = places_among_all(places, read.dropped);
-  const auto middle = read.dropped.insert(read.dropped.end(), added.begin(), added.end());
-  std::inplace_merge(read.dropped.begin(), middle, read.dropped.end());
+  add_dropped(read, places);
   remove_points(read.cloud, places);
 }
 
@@ -99,14 +104,18 @@ std::size_t drop_out_of_range(ReadResult& read, const RangeLimits& limits) {
   return places.size();
 }
 
-ReadResult finish_reading(const std::filesystem::path& path, PointCloud cloud) {
+ReadResult finish_reading(const std::filesystem::path& path, PointCloud cloud, const std::vector<std::size_t>& broken,
+                          std::vector<ReadFinding> findings) {
   ReadResult result;
-  result.dropped = drop_non_finite(cloud);
-  result.num_non_finite = result.dropped.size();
+  result.findings = std::move(findings);
+  result.dropped = broken;
+  const std::vector<std::size_t> non_finite = drop_non_finite(cloud);
+  add_dropped(result, non_finite);
+  result.num_non_finite = non_finite.size();
   if (cloud.empty()) {
-    const std::string dropped = std::to_string(result.dropped.size());
+    const std::string dropped = std::to_string(non_finite.size());
     throw IoError::malformed(
-        path, result.dropped.empty() ? "the file holds no points" : "none of the " + dropped + " points is finite");
+        path, non_finite.empty() ? "the file holds no points" : "none of the " + dropped + " points is finite");
   }
   result.cloud = std::move(cloud);
   return result;

@@ -29,7 +29,9 @@ void drop_points_at_origin(const std::filesystem::path& path, ReadResult& read, 
 /// Drops the points beyond the limits of the origin; returns their number.
 std::size_t drop_out_of_range(ReadResult& read, const RangeLimits& limits);
 
-/// The last step of every reader: drops and counts the points that are not finite. Throws IoError where none is left.
-ReadResult finish_reading(const std::filesystem::path& path, PointCloud cloud);
+/// The last step of every reader: drops and counts the points that are not finite. `broken` are the places, rising and
+/// among all points of the file, of those that could not be read at all. Throws IoError where no point is left.
+ReadResult finish_reading(const std::filesystem::path& path, PointCloud cloud,
+                          const std::vector<std::size_t>& broken = {}, std::vector<ReadFinding> findings = {});
 
 }  // namespace vdbmap

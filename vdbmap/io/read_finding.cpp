@@ -11,6 +11,11 @@ std::string ReadFinding::text() const {
   return text;
 }
 
+ReadFinding missing_points(std::size_t num_promised, std::size_t num_found) {
+  return {"points that the header promises are missing", num_promised - num_found,
+          "it promises " + std::to_string(num_promised) + ", the file holds " + std::to_string(num_found), true};
+}
+
 void add_finding(std::vector<ReadFinding>& findings, const ReadFinding& finding) {
   const auto same = std::ranges::find_if(findings, [&](const ReadFinding& other) {
     return other.what == finding.what && other.is_damage == finding.is_damage;

@@ -27,6 +27,9 @@ struct FileFinding {
   ReadFinding finding;
 };
 
+/// Damage: a file that ends before the last of the points it promises.
+ReadFinding missing_points(std::size_t num_promised, std::size_t num_found);
+
 /// Adds a finding to those of the same file, or counts it to one that says the same of other things.
 void add_finding(std::vector<ReadFinding>& findings, const ReadFinding& finding);
 

@@ -2,103 +2,131 @@
 #include "vdbmap/io/xyz_layout.h"
 
 #include <algorithm>
-#include <cctype>
-#include <string>
+#include <cmath>
+
+#include "vdbmap/io/text.h"
 
 namespace vdbmap {
 namespace {
 
-// More are no table of points, and would take memory out of proportion to the file.
-constexpr std::size_t kMostColumns = 1000;
-
-bool is_blank(char c) { return c == ' ' || c == '\t' || c == '\r' || c == '\f' || c == '\v'; }
-bool is_separator(char c) { return c == ',' || c == ';'; }
-
-void skip_blanks(std::string_view& rest) {
-  while (!rest.empty() && is_blank(rest.front())) rest.remove_prefix(1);
+bool is_plain_whole(std::string_view cell) {
+  if (cell.starts_with('-') || cell.starts_with('+')) cell.remove_prefix(1);
+  return !cell.empty() && std::ranges::all_of(cell, [](char c) { return c >= '0' && c <= '9'; });
 }
 
-bool is_comment(std::string_view rest) { return rest.starts_with('#') || rest.starts_with("//"); }
+bool all_rows(const TableSample& sample, auto&& holds) { return std::ranges::all_of(sample.rows, holds); }
 
-std::string_view without_comment_marker(std::string_view line) {
-  skip_blanks(line);
-  while (line.starts_with('#') || line.starts_with('/')) line.remove_prefix(1);
-  return line;
+// Nobody knows the unit of a whole number; a fraction is of seconds.
+bool has_unknown_unit(const std::string& name, const PointField& field, std::size_t column, const TableSample& sample) {
+  const std::optional<KnownName> known = find_name(name);
+  if (field.role != FieldRole::kTime || !known || known->states_unit || known->states_seconds) return false;
+  return all_rows(sample, [&](const auto& cells) { return column >= cells.size() || is_plain_whole(cells[column]); });
 }
 
-// A name as choose_point_fields() knows it, with the type that gives its numbers the right scale.
-NamedField named_field(std::string_view column) {
-  std::string name;
-  for (const char c : column) {
-    if (c != '"') name += static_cast<char>(std::tolower(static_cast<unsigned char>(c)));
-  }
-  if (name == "laser_number") return {"ring", ScalarType::kUint16};
-  if (name == "offset_ns") return {"t", ScalarType::kInt64};
-  if (name == "r16" || name == "g16" || name == "b16") return {name.substr(0, 1), ScalarType::kUint16};
-  return {name, ScalarType::kFloat64};
+// Fractions are what their spelling says: "1.0" is full light, "1" next to none.
+ScalarType type_of_column(std::size_t column, const TableSample& sample) {
+  const bool are_whole =
+      all_rows(sample, [&](const auto& cells) { return column >= cells.size() || is_plain_whole(cells[column]); });
+  return are_whole ? ScalarType::kInt64 : ScalarType::kFloat64;
 }
 
-bool is_color_channel(const PointField& field) {
-  return field.role == FieldRole::kRed || field.role == FieldRole::kGreen || field.role == FieldRole::kBlue;
+std::optional<double> number_at(const std::vector<std::string_view>& cells, std::size_t column,
+                                const TableFormat& format) {
+  return column < cells.size() ? cell_number(cells[column], format) : std::nullopt;
 }
 
-XyzLayout layout_of(const std::vector<NamedField>& fields) {
-  XyzLayout layout;
-  layout.columns = choose_point_fields(fields);
-  for (std::optional<PointField>& field : layout.columns) {
-    if (!field || !is_color_channel(*field)) continue;
-    layout.colors_have_16_bits = layout.colors_have_16_bits || field->type == ScalarType::kUint16;
-    field->scale = 1.0;
-  }
-  return layout;
+bool is_channel(const std::optional<double>& number) {
+  return number && *number >= 0 && *number <= 65535 && *number == std::floor(*number);
+}
+
+// Whether three columns can be a colour: whole numbers, all written in one way.
+bool can_be_color(const TableSample& sample, std::size_t first) {
+  if (first + 3 > sample.num_columns) return false;
+  const bool is_plain = is_plain_whole(sample.rows.front()[first]);
+  return all_rows(sample, [&](const auto& cells) {
+    for (std::size_t i = first; i < first + 3; ++i) {
+      if (!is_channel(number_at(cells, i, sample.format)) || is_plain_whole(cells[i]) != is_plain) return false;
+    }
+    return true;
+  });
+}
+
+// Whether three columns have length 1, to the two digits that some programs write.
+bool can_be_normal(const TableSample& sample, std::size_t first) {
+  constexpr double kTolerance = 0.02;
+  if (first + 3 > sample.num_columns) return false;
+  return all_rows(sample, [&](const auto& cells) {
+    double sum = 0;
+    for (std::size_t i = first; i < first + 3; ++i) {
+      const std::optional<double> number = number_at(cells, i, sample.format);
+      if (!number) return false;
+      sum += *number * *number;
+    }
+    return std::abs(std::sqrt(sum) - 1) <= kTolerance;
+  });
+}
+
+using Names = std::vector<std::string>;
+
+// The names of the columns behind x, y and z; nothing where none or several orders fit.
+std::optional<Names> names_of_rest(const TableSample& sample, bool is_leica) {
+  const std::size_t width = sample.num_columns;
+  if (width == 3) return Names{};
+  if (width == 4) return Names{"intensity"};
+  const bool is_color = can_be_color(sample, 3) && !(is_leica && width == 7);
+  const bool is_normal = can_be_normal(sample, 3);
+  const bool is_color_behind_intensity = can_be_color(sample, 4) && (width == 7 || can_be_normal(sample, 7));
+  const bool is_color_behind_normal = is_normal && can_be_color(sample, 6);
+  if (width == 6 && is_normal != is_color) return is_color ? Names{"r", "g", "b"} : Names{"-", "-", "-"};
+  if (width < 7) return std::nullopt;
+  if (width == 9 && is_color_behind_normal && !is_color) return Names{"-", "-", "-", "r", "g", "b"};
+  if (is_color_behind_intensity && !is_color && (width == 7 || width == 10)) return Names{"intensity", "r", "g", "b"};
+  const bool is_color_elsewhere = can_be_color(sample, 4) || is_color_behind_normal;
+  if (is_color && !is_color_elsewhere) return Names{"r", "g", "b"};
+  return std::nullopt;
+}
+
+std::string text_of(const Names& names) {
+  std::string text;
+  for (const std::string& name : names) text += (text.empty() ? "" : " ") + name;
+  return text;
 }
 
 }  // namespace
 
-std::optional<std::string_view> next_column(std::string_view& rest) {
-  skip_blanks(rest);
-  if (rest.empty() || is_comment(rest)) return std::nullopt;
-
-  const auto* const end = std::ranges::find_if(rest, [](char c) { return is_blank(c) || is_separator(c); });
-  const std::string_view column(rest.begin(), end);
-  rest.remove_prefix(column.size());
-  skip_blanks(rest);
-  if (!rest.empty() && is_separator(rest.front())) rest.remove_prefix(1);
-  return column;
-}
-
-std::size_t count_columns(std::string_view line) {
-  std::size_t count = 0;
-  while (next_column(line)) ++count;
-  return count;
-}
-
-std::optional<XyzLayout> layout_of_header(std::string_view line) {
-  std::string_view rest = without_comment_marker(line);
+XyzLayout layout_of_names(const Names& names, const TableSample& sample) {
   std::vector<NamedField> fields;
-  while (const auto column = next_column(rest)) {
-    if (fields.size() == kMostColumns) return std::nullopt;
-    fields.push_back(named_field(*column));
+  for (const std::string& name : names) fields.push_back({name, ScalarType::kFloat64});
+  XyzLayout layout{choose_point_fields(fields), names};
+  for (std::size_t i = 0; i < names.size(); ++i) {
+    std::optional<PointField>& field = layout.columns[i];
+    if (!field) continue;
+    if (is_color_channel(field->role)) field->type = type_of_column(i, sample);
+    if (is_coordinate(field->role) && field->scale != 1.0)
+      layout.note = "coordinates turned into metres from the unit that their names state";
   }
-
-  XyzLayout layout = layout_of(fields);
-  if (missing_coordinate(layout.columns)) return std::nullopt;
   return layout;
 }
 
-std::optional<XyzLayout> layout_of_count(std::size_t num_columns) {
-  switch (num_columns) {
-    case 3:
-      return layout_of_header("x y z");
-    case 4:
-      return layout_of_header("x y z intensity");
-    case 6:
-      return layout_of_header("x y z r g b");
-    case 7:
-      return layout_of_header("x y z intensity r g b");
-    default:
-      return std::nullopt;
+void leave_out_times_of_no_unit(XyzLayout& layout, const TableSample& sample) {
+  for (std::size_t i = 0; i < layout.columns.size(); ++i) {
+    std::optional<PointField>& field = layout.columns[i];
+    if (!field || !has_unknown_unit(layout.names[i], *field, i, sample)) continue;
+    field.reset();
+    layout.note = "times left out: whole numbers of no stated unit in column " + vdbmap::quoted(layout.names[i]);
   }
+}
+
+std::optional<XyzLayout> layout_of_values(const TableSample& sample, bool is_leica) {
+  const std::optional<Names> rest = names_of_rest(sample, is_leica);
+  if (!rest) return std::nullopt;
+  Names names = {"x", "y", "z"};
+  names.insert(names.end(), rest->begin(), rest->end());
+  names.resize(sample.num_columns, "-");
+  XyzLayout layout = layout_of_names(names, sample);
+  const bool is_plain = names.size() <= 4 || names == Names{"x", "y", "z", "r", "g", "b"};
+  if (!is_plain) layout.note = "columns without names are taken for " + text_of(names);
+  return layout;
 }
 
 }  // namespace vdbmap

@@ -1,180 +1,111 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include <algorithm>
-#include <array>
-#include <cmath>
-#include <optional>
-#include <span>
-#include <string>
-#include <string_view>
 #include <utility>
-#include <vector>
 
+#include "vdbmap/core/error.h"
 #include "vdbmap/io/byte_reader.h"
 #include "vdbmap/io/point_cloud_filter.h"
+#include "vdbmap/io/table_sample.h"
 #include "vdbmap/io/text.h"
 #include "vdbmap/io/xyz.h"
-#include "vdbmap/io/xyz_layout.h"
+#include "vdbmap/io/xyz_preamble.h"
+#include "vdbmap/io/xyz_rows.h"
 
 namespace vdbmap {
 namespace {
 
-constexpr std::size_t kPointsPerBlock = 1024;  // points
-
-bool needs_whole_number(FieldRole role) {
-  switch (role) {
-    case FieldRole::kRed:
-    case FieldRole::kGreen:
-    case FieldRole::kBlue:
-    case FieldRole::kRing:
-    case FieldRole::kLabel:
-      return true;
-    default:
-      return false;
-  }
+std::uint64_t line_number(const ByteReader& file, std::string_view place) {
+  const std::string_view all = file.all();
+  return 1 + static_cast<std::uint64_t>(std::count(all.data(), place.data(), line_end_of(all)));
 }
 
-// NaN passes: it is how tables say that a value is missing.
-bool is_16_bit_number_or_nan(double number) {
-  return std::isnan(number) || (number >= 0 && number <= 65535 && number == std::floor(number));
+void refuse_doubtful_comma(const ByteReader& file, const TableSample& sample) {
+  const std::optional<TableDoubt> doubt = find_doubtful_comma(sample);
+  if (!doubt) return;
+  throw IoError::malformed_at_line(file.path(), line_number(file, doubt->line),
+                                   quoted(doubt->line) + " " + doubt->reason + "; write decimal points");
 }
 
-template <typename T>
-void grow(std::vector<T>& values, bool is_present, std::size_t count) {
-  if (is_present) values.resize(values.size() + count);
+// Why there is no row at all.
+ReadResult refuse_without_rows(ByteReader& file) {
+  file.seek(0);
+  const XyzPreamble preamble = read_preamble(file, {});
+  constexpr const char* kNumbers =
+      "no line holds three numbers, parted by blanks, commas, semicolons or tabs and without marks between thousands";
+  if (preamble.first_row) file.fail_line(kNumbers);
+  if (preamble.text) throw IoError::malformed_at_line(file.path(), preamble.text->line, kNumbers);
+  return finish_reading(file.path(), {});
 }
 
-// Collects the numbers of a block of points, column by column.
-class PointCollector {
- public:
-  explicit PointCollector(XyzLayout layout) : layout_(std::move(layout)), shape_(make_cloud(layout_.columns, 1)) {
-    numbers_.resize(layout_.columns.size());
-  }
-
-  const std::vector<std::optional<PointField>>& columns() const { return layout_.columns; }
-
-  void set(std::size_t column, double number) { numbers_[column][num_in_block_] = number; }
-
-  void finish_point() {
-    if (++num_in_block_ == kPointsPerBlock) store_block();
-  }
-
-  PointCloud finish() {
-    store_block();
-    scale_colors();
-    return std::move(cloud_);
-  }
-
- private:
-  void store_block() {
-    const std::size_t first = cloud_.size();
-    grow(cloud_.positions, true, num_in_block_);
-    grow(cloud_.colors, !shape_.colors.empty(), num_in_block_);
-    grow(cloud_.intensities, !shape_.intensities.empty(), num_in_block_);
-    grow(cloud_.times, !shape_.times.empty(), num_in_block_);
-    grow(cloud_.rings, !shape_.rings.empty(), num_in_block_);
-    grow(cloud_.labels, !shape_.labels.empty(), num_in_block_);
-    for (std::size_t column = 0; column < numbers_.size(); ++column) {
-      if (columns()[column]) {
-        store_numbers(cloud_, *columns()[column], first, std::span(numbers_[column].data(), num_in_block_));
-      }
-    }
-    num_in_block_ = 0;
-  }
-
-  void scale_colors() {
-    const auto has_8_bits = [](const Rgb16& color) { return std::max({color.r, color.g, color.b}) <= 255; };
-    if (layout_.colors_have_16_bits || !std::ranges::all_of(cloud_.colors, has_8_bits)) return;
-    const auto widened = [](std::uint16_t channel) { return static_cast<std::uint16_t>(channel * 257); };
-    for (Rgb16& color : cloud_.colors) color = {widened(color.r), widened(color.g), widened(color.b)};
-  }
-
-  XyzLayout layout_;
-  PointCloud shape_;  // one point with the attributes that the columns provide
-  std::vector<std::array<double, kPointsPerBlock>> numbers_;
-  std::size_t num_in_block_ = 0;
-  PointCloud cloud_;
-};
-
-double parse_field(const ByteReader& file, const PointField& field, std::string_view text, std::size_t column) {
-  const auto place = [&] { return "column " + std::to_string(column + 1) + ": "; };
-  const std::optional<double> number = parse_number(text);
-  if (!number) file.fail_line(place() + (text.empty() ? "is empty" : quoted(text) + " is not a number"));
-  if (needs_whole_number(field.role) && !is_16_bit_number_or_nan(*number)) {
-    file.fail_line(place() + quoted(text) + " is not a whole number from 0 to 65535");
-  }
-  return number_from_text(field, *number);
+bool fits(std::size_t num_names, const TableSample& sample) {
+  return num_names == sample.num_columns || (num_names == sample.num_columns + 1 && sample.has_empty_last_column);
 }
 
-void parse_point(const ByteReader& file, std::string_view line, PointCollector& collector) {
-  const auto& columns = collector.columns();
-  std::string_view rest = line;
-  for (std::size_t i = 0; i < columns.size(); ++i) {
-    const auto text = next_column(rest);
-    if (!text) {
-      file.fail_line("found " + std::to_string(i) + " columns, expected " + std::to_string(columns.size()));
-    }
-    if (columns[i]) collector.set(i, parse_field(file, *columns[i], *text, i));
+std::string text_of_counts(std::size_t num_names, const TableSample& sample) {
+  return std::to_string(num_names) + " names for " + std::to_string(sample.num_columns) + " columns";
+}
+
+[[noreturn]] void fail_at(const ByteReader& file, const XyzHeader& header, const std::string& reason) {
+  throw IoError::malformed_at_line(file.path(), header.line, reason);
+}
+
+XyzLayout layout_of_given(const ByteReader& file, const std::vector<std::string>& columns, const TableSample& sample) {
+  if (!fits(columns.size(), sample)) file.fail_line("--columns has " + text_of_counts(columns.size(), sample));
+  return layout_of_names(columns, sample);
+}
+
+// A header decides even where it cannot be right: what it says is not overruled by the number of columns.
+std::optional<XyzLayout> layout_of_header(const ByteReader& file, const XyzPreamble& preamble,
+                                          const TableSample& sample) {
+  const std::optional<XyzHeader>& header = preamble.header;
+  if (!header || (header->is_comment && header->is_sentence() && !fits(header->names.size(), sample))) {
+    return std::nullopt;
   }
-  if (next_column(rest)) {
-    file.fail_line("found " + std::to_string(count_columns(line)) + " columns, expected " +
-                   std::to_string(columns.size()));
+  if (!fits(header->names.size(), sample)) {
+    fail_at(file, *header, "the header has " + text_of_counts(header->names.size(), sample));
   }
-  collector.finish_point();
+  XyzLayout layout = layout_of_names(header->names, sample);
+  leave_out_times_of_no_unit(layout, sample);
+  return layout;
 }
 
-// What the lines before the first point say about the columns.
-XyzLayout layout_of_first_point(const ByteReader& file, const std::optional<XyzLayout>& header, std::string_view line) {
-  const std::size_t num_columns = count_columns(line);
-  // A comment may speak of x, y and z without being a header: it must fit.
-  if (header && header->columns.size() == num_columns) return *header;
-  if (auto layout = layout_of_count(num_columns)) return *layout;
-  file.fail_line("found " + std::to_string(num_columns) +
-                 " columns and no line before that names them; without names 3, 4, 6 or 7 are expected");
-}
-
-std::string_view read_line_without_mark(ByteReader& file) {
-  constexpr std::string_view kByteOrderMark = "\xef\xbb\xbf";
-  const bool is_first = file.offset() == 0;
-  std::string_view line = file.read_line();
-  if (is_first && line.starts_with(kByteOrderMark)) line.remove_prefix(kByteOrderMark.size());
-  return line;
-}
-
-bool is_number(std::string_view line) {
-  const auto column = next_column(line);
-  return column && parse_number(*column);
-}
-
-// Reads up to the first point and returns its line; nothing where there is none.
-std::optional<std::string_view> find_first_point(ByteReader& file, std::optional<XyzLayout>& header) {
-  while (file.remaining() > 0) {
-    const std::string_view line = read_line_without_mark(file);
-    const bool is_data = count_columns(line) > 0;
-    if (is_data && is_number(line)) return line;
-    std::optional<XyzLayout> named = layout_of_header(line);
-    if (is_data && (!named || header))
-      file.fail_line(quoted(line) + " is neither a point nor a header with x, y and z");
-    if (named) header = std::move(named);
+XyzLayout choose_layout(const ByteReader& file, const XyzPreamble& preamble, const TableSample& sample,
+                        const std::vector<std::string>& columns) {
+  if (!columns.empty()) return layout_of_given(file, columns, sample);
+  if (const auto layout = layout_of_header(file, preamble, sample)) return *layout;
+  if (preamble.text && fits(preamble.text->names.size(), sample)) {
+    const std::string advice = preamble.text->names_angles() ? "project latitude and longitude to metres first"
+                                                             : "say with --columns what the columns are";
+    fail_at(file, *preamble.text, "a header without x, y and z; " + advice);
   }
-  return std::nullopt;
+  if (may_be_halves_of_numbers(sample)) {
+    file.fail_line("its commas may part columns or decimals; write decimal points, or name the columns");
+  }
+  const bool is_leica = lower_case(file.path().extension().string()) == ".pts";
+  if (const auto layout = layout_of_values(sample, is_leica)) return *layout;
+  file.fail_line("found " + std::to_string(sample.num_columns) +
+                 " columns, and neither a header nor their numbers say what they are; name them, as in --columns "
+                 "x,y,z,r,g,b,-");
 }
 
 }  // namespace
 
-ReadResult read_xyz(const std::filesystem::path& path) {
+ReadResult read_xyz(const std::filesystem::path& path, const std::vector<std::string>& columns) {
+  check_columns(columns);
   ByteReader file(path);
-  std::optional<XyzLayout> header;
-  const auto first_point = find_first_point(file, header);
-  if (!first_point) return finish_reading(path, {});
+  refuse_foreign_text(file);
+  const std::optional<TableSample> sample = take_sample(without_byte_order_mark(file.all()));
+  if (!sample) return refuse_without_rows(file);
+  refuse_doubtful_comma(file, *sample);
 
-  PointCollector collector(layout_of_first_point(file, header, *first_point));
-  parse_point(file, *first_point, collector);
-  while (file.remaining() > 0) {
-    const std::string_view line = file.read_line();
-    std::string_view rest = line;
-    if (next_column(rest)) parse_point(file, line, collector);
-  }
-  return finish_reading(path, collector.finish());
+  const XyzPreamble preamble = read_preamble(file, sample->format);
+  if (!preamble.first_row) return refuse_without_rows(file);
+  XyzRows rows(choose_layout(file, preamble, *sample, columns), sample->format, preamble.header, preamble.count);
+  rows.read(file, *preamble.first_row);
+  while (file.remaining() > 0) rows.read(file, file.read_line());
+  ReadResult result = rows.finish(path);
+  result.findings.insert(result.findings.begin(), preamble.findings.begin(), preamble.findings.end());
+  return result;
 }
 
 }  // namespace vdbmap

@@ -168,17 +168,73 @@ TEST_F(Xyz, PointsThatAreNotFiniteAreDroppedWithTheirAttributesAndCounted) {
 }
 
 TEST_F(Xyz, ErrorsNameTheLineAndTheReason) {
-  EXPECT_EQ(error_for("1 2 3\n1 2 a3\n"), ":2: column 3: 'a3' is not a number");
-  EXPECT_EQ(error_for("1 2 3\n\n# comment\n1 2\n"), ":4: found 2 columns, expected 3");
-  EXPECT_EQ(error_for("1 2 3\n1 2 3 4\n"), ":2: found 4 columns, expected 3");
-  EXPECT_EQ(error_for("1,2,3\n1,,3\n"), ":2: column 2: is empty");
   EXPECT_EQ(error_for("1 2\n"),
-            ":1: found 2 columns and no line before that names them; without names 3, 4, 6 or 7 are expected");
-  EXPECT_EQ(error_for("east north up\n1 2 3\n"), ":1: 'east north up' is neither a point nor a header with x, y and z");
-  EXPECT_EQ(error_for("x y z\nx y z\n1 2 3\n"), ":2: 'x y z' is neither a point nor a header with x, y and z");
-  EXPECT_EQ(error_for("1 2 3 4 5 65536\n"), ":1: column 6: '65536' is not a whole number from 0 to 65535");
-  EXPECT_EQ(error_for("x y z label\n1 2 3 1.5\n"), ":2: column 4: '1.5' is not a whole number from 0 to 65535");
-  EXPECT_EQ(error_for("x y z ring\n1 2 3 -1\n"), ":2: column 4: '-1' is not a whole number from 0 to 65535");
+            ":1: no line holds three numbers, parted by blanks, commas, semicolons or tabs and without marks between "
+            "thousands");
+  EXPECT_EQ(error_for("left right high\n1 2 3\n"),
+            ":1: a header without x, y and z; say with --columns what the columns are");
+  EXPECT_EQ(error_for("x y z\nx z y\n1 2 3\n"), ":2: another header with x, y and z, of other columns");
+  EXPECT_EQ(error_for("x y z\n1 2 3\nx z y\n1 2 3\n"), ":3: another header with x, y and z, of other columns");
+  EXPECT_EQ(error_for("1 2 3 4 5 65536\n"),
+            ":1: found 6 columns, and neither a header nor their numbers say what they are; name them, as in --columns "
+            "x,y,z,r,g,b,-");
+}
+
+TEST_F(Xyz, RowsThatAreBrokenAreLeftOutAndTheFirstIsNamed) {
+  const auto first_of = [&](const std::string& bad) {
+    const ReadResult result = read("1 2 3\n" + bad + "\n4 5 6\n7 8 9\n");
+    EXPECT_EQ(result.cloud.positions, (Positions{{1, 2, 3}, {4, 5, 6}, {7, 8, 9}})) << bad;
+    EXPECT_EQ(result.dropped, std::vector<std::size_t>{1}) << bad;
+    EXPECT_EQ(result.num_non_finite, 0U);
+    EXPECT_EQ(result.findings.size(), 1U) << bad;
+    EXPECT_TRUE(result.findings.at(0).is_damage);
+    return result.findings.at(0).text();
+  };
+  EXPECT_EQ(first_of("1 2 a3"), "1 broken points left out (line 2: column 3: 'a3' is not a number)");
+  EXPECT_EQ(first_of("1 2"), "1 broken points left out (line 2: found 2 columns, expected 3)");
+  EXPECT_EQ(first_of("1 2 3 4"), "1 broken points left out (line 2: found 4 columns, expected 3)");
+  EXPECT_EQ(first_of("words"), "1 broken points left out (line 2: column 1: 'words' is not a number)");
+}
+
+TEST_F(Xyz, PlacesOfBrokenAndInfinitePointsCountAllRows) {
+  const ReadResult result = read("1,2,3\nnan,2,3\nbad,2,3\n4,5,6\n1,,3\nnan,2,3\n7,8,9\n1,2,3\n");
+  EXPECT_EQ(result.dropped, (std::vector<std::size_t>{1, 2, 4, 5}));
+  EXPECT_EQ(result.num_non_finite, 2U);
+  EXPECT_EQ(result.cloud.positions, (Positions{{1, 2, 3}, {4, 5, 6}, {7, 8, 9}, {1, 2, 3}}));
+  EXPECT_EQ(result.findings.at(0).count, 2U);
+}
+
+TEST_F(Xyz, ATextWithMoreBrokenRowsThanWholeOnesIsNoTable) {
+  EXPECT_EQ(read("1 2 3\n1 2 a\n").cloud.size(), 1U);
+  EXPECT_EQ(error_for("1 2 3\n1 2 a\n1 2 b\n"), ":2: column 3: 'a' is not a number");
+  EXPECT_EQ(error_for("1 2 3\n1 2\n1 2\n"), ":2: found 2 columns, expected 3");
+}
+
+TEST_F(Xyz, ValuesThatAPointCanDoWithoutAreMissing) {
+  const ReadResult result =
+      read("x,y,z,intensity,ring,label\n1,2,3,0.5,1,2\n4,5,6,N/A,-1,1.5\n7,8,9,,3,4\n1,1,1,oops,5,70000\n");
+  EXPECT_EQ(result.cloud.size(), 4U);
+  EXPECT_EQ(result.cloud.intensities.at(0), 0.5F);
+  for (const std::size_t i : {1U, 2U, 3U}) EXPECT_TRUE(std::isnan(result.cloud.intensities.at(i)));
+  EXPECT_EQ(result.cloud.rings, (std::vector<std::uint16_t>{1, 0, 3, 5}));
+  EXPECT_EQ(result.cloud.labels, (std::vector<std::uint16_t>{2, 0, 4, 70000 - 65536}));
+  ASSERT_EQ(result.findings.size(), 3U);
+  EXPECT_EQ(result.findings[0].text(), "3 values of 'intensity' left out (first: line 3: 'N/A' is not a number)");
+  EXPECT_TRUE(result.findings[0].is_damage) << "oops";
+  EXPECT_EQ(result.findings[1].text(),
+            "1 values of 'ring' left out (line 3: '-1' is not a whole number from 0 to 65535)");
+  EXPECT_EQ(result.findings[2].text(),
+            "1 values of 'label' left out (line 3: '1.5' is not a whole number from 0 to 2^32-1)");
+}
+
+TEST_F(Xyz, AColumnOfNoNumbersIsNoAttributeAndNoDamage) {
+  const ReadResult result =
+      read("time,x,y,z,class,note\n2024-05-01T12:00:00,1,2,3,tree,a b\n2024-05-01,4,5,6,car,#2\n");
+  EXPECT_EQ(result.cloud.positions, (Positions{{1, 2, 3}, {4, 5, 6}}));
+  EXPECT_TRUE(result.cloud.times.empty());
+  EXPECT_TRUE(result.cloud.labels.empty());
+  ASSERT_EQ(result.findings.size(), 2U);
+  for (const ReadFinding& finding : result.findings) EXPECT_FALSE(finding.is_damage);
 }
 
 TEST_F(Xyz, ALineOfVeryManyColumnsTakesNoMemory) {
