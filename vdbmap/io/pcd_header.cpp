@@ -47,11 +47,12 @@ class Entries {
     static constexpr std::array<std::string_view, 11> kKeywords = {
         "VERSION", "FIELDS", "COLUMNS", "SIZE", "TYPE", "COUNT", "WIDTH", "HEIGHT", "VIEWPOINT", "POINTS", "DATA"};
     std::vector<std::string_view> words = read_header_words(reader);
-    if (words.empty() || words[0].starts_with('#')) return;
-    if (std::ranges::find(kKeywords, words[0]) == kKeywords.end()) {
-      reader.fail_line("unexpected " + quoted(words[0]) + " in the header");
-    }
-    const std::string_view keyword = words[0] == "COLUMNS" ? "FIELDS" : words[0];
+    if (!words.empty() && reader.line() == 1) words[0] = without_byte_order_mark(words[0]);
+    if (words.empty() || words[0].starts_with('#') || words[0].starts_with(".PCD")) return;
+    const auto* const known = std::ranges::find_if(
+        kKeywords, [&](std::string_view word) { return lower_case(word) == lower_case(words[0]); });
+    if (known == kKeywords.end()) reader.fail_line("unexpected " + quoted(words[0]) + " in the header");
+    const std::string_view keyword = *known == "COLUMNS" ? "FIELDS" : *known;
     words.erase(words.begin());
     if (!entries_.try_emplace(keyword, Entry{reader.line(), std::move(words)}).second) {
       reader.fail_line("a second line " + std::string(keyword));
@@ -70,12 +71,13 @@ std::uint64_t parse_one_count(const Entries& entries, const Entry& entry, std::s
 
 std::optional<ScalarType> find_type(std::string_view type, std::uint64_t size) {
   static const std::map<std::pair<std::string_view, std::uint64_t>, ScalarType> kTypes = {
-      {{"I", 1}, ScalarType::kInt8},    {{"U", 1}, ScalarType::kUint8},  {{"I", 2}, ScalarType::kInt16},
-      {{"U", 2}, ScalarType::kUint16},  {{"I", 4}, ScalarType::kInt32},  {{"U", 4}, ScalarType::kUint32},
-      {{"I", 8}, ScalarType::kInt64},   {{"U", 8}, ScalarType::kUint64}, {{"F", 4}, ScalarType::kFloat32},
-      {{"F", 8}, ScalarType::kFloat64},
+      {{"i", 1}, ScalarType::kInt8},    {{"u", 1}, ScalarType::kUint8},  {{"i", 2}, ScalarType::kInt16},
+      {{"u", 2}, ScalarType::kUint16},  {{"i", 4}, ScalarType::kInt32},  {{"u", 4}, ScalarType::kUint32},
+      {{"i", 8}, ScalarType::kInt64},   {{"u", 8}, ScalarType::kUint64}, {{"f", 4}, ScalarType::kFloat32},
+      {{"f", 8}, ScalarType::kFloat64},
   };
-  const auto found = kTypes.find({type, size});
+  const std::string lower = lower_case(type);
+  const auto found = kTypes.find({lower, size});
   return found == kTypes.end() ? std::nullopt : std::optional(found->second);
 }
 
@@ -124,24 +126,33 @@ std::uint64_t parse_single(const Entries& entries, std::string_view keyword) {
   return parse_one_count(entries, entry, 0);
 }
 
-std::uint64_t parse_num_points(const Entries& entries) {
-  if (!entries.find("WIDTH")) return parse_single(entries, "POINTS");
+std::uint64_t parse_area(const Entries& entries) {
   const std::uint64_t width = parse_single(entries, "WIDTH");
   const std::uint64_t height = entries.find("HEIGHT") ? parse_single(entries, "HEIGHT") : 1;
   std::uint64_t area = 0;
   if (__builtin_mul_overflow(width, height, &area)) entries.fail(entries.at("WIDTH"), "WIDTH x HEIGHT exceeds 2^64");
-  if (entries.find("POINTS") && parse_single(entries, "POINTS") != area) {
-    entries.fail(entries.at("POINTS"), "POINTS differs from WIDTH x HEIGHT = " + std::to_string(area));
-  }
   return area;
+}
+
+std::uint64_t parse_num_points(const Entries& entries, std::vector<ReadFinding>& findings) {
+  if (!entries.find("WIDTH")) return parse_single(entries, "POINTS");
+  const std::uint64_t area = parse_area(entries);
+  if (!entries.find("POINTS")) return area;
+  const std::uint64_t num_points = parse_single(entries, "POINTS");
+  if (num_points != area) {
+    findings.push_back({"the header contradicts itself", 0,
+                        "POINTS is " + std::to_string(num_points) + ", WIDTH x HEIGHT " + std::to_string(area), true});
+  }
+  return std::max(num_points, area);
 }
 
 PcdEncoding parse_encoding(const Entries& entries) {
   const Entry& data = entries.at("DATA");
   if (data.values.size() != 1) entries.fail(data, "expected 'DATA ENCODING'");
-  if (data.values[0] == "ascii") return PcdEncoding::kAscii;
-  if (data.values[0] == "binary") return PcdEncoding::kBinary;
-  if (data.values[0] == "binary_compressed") return PcdEncoding::kBinaryCompressed;
+  const std::string encoding = lower_case(data.values[0]);
+  if (encoding == "ascii") return PcdEncoding::kAscii;
+  if (encoding == "binary") return PcdEncoding::kBinary;
+  if (encoding == "binary_compressed") return PcdEncoding::kBinaryCompressed;
   entries.fail(data, "unknown encoding " + quoted(data.values[0]));
 }
 
@@ -164,7 +175,7 @@ PcdHeader read_pcd_header(ByteReader& reader) {
   PcdHeader header;
   header.fields = parse_fields(entries);
   header.fields_line = entries.at("FIELDS").line;
-  header.num_points = parse_num_points(entries);
+  header.num_points = parse_num_points(entries, header.findings);
   header.num_points_line = entries.at(entries.find("POINTS") ? "POINTS" : "WIDTH").line;
   header.encoding = parse_encoding(entries);
   return header;

@@ -25,12 +25,15 @@ struct PcdHeader {
   std::uint64_t num_points;
   std::uint64_t num_points_line;  ///< of POINTS, or of WIDTH, from 1
   PcdEncoding encoding;
+  std::vector<ReadFinding> findings;  ///< what contradicts itself
 
   std::uint64_t point_size() const;         ///< [bytes]
   std::uint64_t numbers_per_point() const;  ///< of all fields together
 };
 
-/// Reads to the end of the line DATA and leaves the reader at the first byte of data. Throws IoError with the line.
+/// Keywords may be in small letters. Where POINTS is not WIDTH x HEIGHT, the larger is taken: the data show how many
+/// there are. Reads to the end of the line DATA and leaves the reader at the first byte of data. Throws IoError with
+/// the line.
 PcdHeader read_pcd_header(ByteReader& reader);
 
 }  // namespace vdbmap

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include <algorithm>
+#include <span>
 #include <string_view>
 #include <utility>
 
@@ -8,8 +9,10 @@
 #include "vdbmap/io/ply.h"
 #include "vdbmap/io/ply_header.h"
 #include "vdbmap/io/point_cloud_filter.h"
+#include "vdbmap/io/point_collector.h"
 #include "vdbmap/io/point_fields.h"
 #include "vdbmap/io/text.h"
+#include "vdbmap/io/word_points.h"
 
 namespace vdbmap {
 namespace {
@@ -33,26 +36,34 @@ const PlyProperty* find_property(const PlyElement& vertex, const std::string& na
 }
 
 // The place of each property in a PointCloud; lists have none.
-Fields choose_fields(const ByteReader& reader, const PlyElement& vertex) {
+Fields choose_fields(const ByteReader& reader, const PlyElement& vertex, bool has_16_bit_colors) {
   std::vector<NamedField> numbers;
   for (const PlyProperty& property : vertex.properties) {
     numbers.push_back({property.count_type ? "" : property.name, property.type});
   }
   Fields fields = choose_point_fields(numbers);
   if (const auto missing = missing_coordinate(fields)) fail_without_coordinate(reader, vertex, *missing);
+  for (std::optional<PointField>& field : fields) {
+    if (field && has_16_bit_colors) field->scale_is_known = true;  // as 16 bits, unless it is of 8
+  }
   return fields;
+}
+
+std::uint64_t most_elements(const ByteReader& reader, const PlyElement& element, bool is_text) {
+  // In text a number takes a digit and a separator, which the end of the file may replace.
+  const std::uint64_t least_size = is_text ? 2 * element.properties.size() : element.least_binary_size();
+  const std::uint64_t available = reader.remaining() + (is_text ? 1 : 0);
+  return least_size == 0 ? element.count : available / least_size;
 }
 
 // A header's word on the number of elements is worth what the rest of the file can hold.
 void check_count(const ByteReader& reader, const PlyElement& element, bool is_text) {
-  // In text a number takes a digit and a separator, which the end of the file may replace.
-  const std::uint64_t least_size = is_text ? 2 * element.properties.size() : element.least_binary_size();
-  const std::uint64_t available = reader.remaining() + (is_text ? 1 : 0);
-  if (least_size == 0 || element.count <= available / least_size) return;
+  const std::uint64_t most = most_elements(reader, element, is_text);
+  if (element.count <= most) return;
   throw IoError::malformed_at_line(reader.path(), element.line,
                                    "the header promises " + std::to_string(element.count) + " elements " +
                                        vdbmap::quoted(element.name) + ", the file holds at most " +
-                                       std::to_string(available / least_size));
+                                       std::to_string(most));
 }
 
 void skip_binary_list(ByteReader& reader, const PlyProperty& list, std::endian order) {
@@ -80,79 +91,66 @@ void read_binary_element(ByteReader& reader, const PlyElement& element, std::end
   }
 }
 
-double read_word(const ByteReader& reader, std::string_view& rest, const PlyProperty& property) {
-  const std::string_view word = next_word(rest);
-  if (word.empty()) reader.fail_line("the line ends before property " + vdbmap::quoted(property.name));
-  const std::optional<double> number = parse_number(word);
-  if (!number)
-    reader.fail_line("property " + vdbmap::quoted(property.name) + " is " + quoted(word) + ", expected a number");
-  return *number;
+// The points that the header promises, or as many whole ones as there are.
+struct Vertices {
+  ReadResult read;
+  std::uint64_t count = 0;  // broken ones included
+};
+
+WordPoints words_of(const PlyElement& vertex, const Fields& fields) {
+  std::vector<WordColumn> columns;
+  for (std::size_t i = 0; i < fields.size(); ++i) {
+    columns.push_back({vertex.properties[i].name, fields[i], vertex.properties[i].count_type.has_value()});
+  }
+  return {std::move(columns), "property"};
 }
 
-void skip_text_list(const ByteReader& reader, std::string_view& rest, const PlyProperty& list) {
-  const double length = read_word(reader, rest, list);
-  for (double i = 0; i < length; ++i) read_word(reader, rest, list);
+Vertices read_text_vertices(ByteReader& reader, const PlyElement& vertex, const Fields& fields) {
+  WordPoints words = words_of(vertex, fields);
+  words.read(reader, vertex.count);
+  const std::uint64_t count = words.num_points();
+  return {words.finish(reader.path(), {}), count};
 }
 
-// Calls on_number(index of the property, its number) for each property that is not a list.
-template <typename OnNumber>
-void read_text_element(ByteReader& reader, const PlyElement& element, OnNumber&& on_number) {
-  std::string_view rest = read_filled_line(reader);
-  for (std::size_t i = 0; i < element.properties.size(); ++i) {
-    if (element.properties[i].count_type) {
-      skip_text_list(reader, rest, element.properties[i]);
-    } else {
-      on_number(i, read_word(reader, rest, element.properties[i]));
+// Vertices with lists differ in size: they are read one after the other, up to the first that is damaged.
+Vertices read_uneven_vertices(ByteReader& reader, const PlyElement& vertex, const Fields& fields, std::endian order) {
+  PointCollector collector(fields);
+  try {
+    while (collector.size() < vertex.count) {
+      read_binary_element(reader, vertex, order, [&](std::size_t i, const char* bytes) {
+        if (fields[i]) collector.set(i, load_number(bytes, type_to_load(*fields[i]), order));
+      });
+      collector.finish_point();
     }
+  } catch (const IoError&) {
+    if (collector.size() == 0) throw;
   }
-  if (const auto surplus = next_word(rest); !surplus.empty()) {
-    reader.fail_line("found " + quoted(surplus) + " after the last property");
-  }
+  const std::uint64_t count = collector.size();
+  return {finish_reading(reader.path(), collector.finish()), count};
 }
 
-void store_number(PointCloud& cloud, const std::optional<PointField>& field, std::size_t point, double number) {
-  if (field) store_numbers(cloud, *field, point, {&number, 1});
-}
-
-PointCloud read_text_vertices(ByteReader& reader, const PlyElement& vertex, const Fields& fields) {
-  PointCloud cloud = make_cloud(fields, vertex.count);
-  for (std::size_t point = 0; point < vertex.count; ++point) {
-    read_text_element(reader, vertex, [&](std::size_t i, double number) {
-      if (fields[i]) store_number(cloud, fields[i], point, number_from_text(*fields[i], number));
-    });
-  }
-  return cloud;
-}
-
-// Vertices with lists differ in size: they are read one after the other.
-PointCloud read_uneven_vertices(ByteReader& reader, const PlyElement& vertex, const Fields& fields, std::endian order) {
-  PointCloud cloud = make_cloud(fields, vertex.count);
-  for (std::size_t point = 0; point < vertex.count; ++point) {
-    read_binary_element(reader, vertex, order, [&](std::size_t i, const char* bytes) {
-      if (fields[i]) store_number(cloud, fields[i], point, load_number(bytes, type_to_load(*fields[i]), order));
-    });
-  }
-  return cloud;
-}
-
-PointCloud read_even_vertices(ByteReader& reader, const PlyElement& vertex, const Fields& fields, std::endian order) {
+Vertices read_even_vertices(ByteReader& reader, const PlyElement& vertex, const Fields& fields, std::endian order) {
   const std::uint64_t size = vertex.least_binary_size();
-  const char* next = reader.bytes(vertex.count * size).data();
+  const std::uint64_t count = std::min(vertex.count, reader.remaining() / size);
+  const char* next = reader.bytes(count * size).data();
   std::vector<PointColumn> columns;
   for (std::size_t i = 0; i < fields.size(); ++i) {
     if (fields[i]) columns.push_back({*fields[i], {next, size, type_to_load(*fields[i]), order}});
     next += size_of(vertex.properties[i].type);
   }
-  PointCloud cloud = make_cloud(fields, vertex.count);
+  PointCloud cloud = make_cloud(fields, count);
   store_columns(cloud, columns);
-  return cloud;
+  if (count < vertex.count) reader.skip(reader.remaining());
+  return {finish_reading(reader.path(), std::move(cloud)), count};
 }
 
-PointCloud read_vertices(ByteReader& reader, const PlyElement& vertex, PlyHeader::Encoding encoding) {
-  const Fields fields = choose_fields(reader, vertex);
-  if (encoding == PlyHeader::Encoding::kAscii) return read_text_vertices(reader, vertex, fields);
-  if (vertex.has_lists()) return read_uneven_vertices(reader, vertex, fields, byte_order(encoding));
-  return read_even_vertices(reader, vertex, fields, byte_order(encoding));
+Vertices read_vertices(ByteReader& reader, const PlyElement& vertex, const PlyHeader& header) {
+  const Fields fields = choose_fields(reader, vertex, header.has_16_bit_colors);
+  const bool is_text = header.encoding == PlyHeader::Encoding::kAscii;
+  if (most_elements(reader, vertex, is_text) == 0) check_count(reader, vertex, is_text);
+  if (is_text) return read_text_vertices(reader, vertex, fields);
+  if (vertex.has_lists()) return read_uneven_vertices(reader, vertex, fields, byte_order(header.encoding));
+  return read_even_vertices(reader, vertex, fields, byte_order(header.encoding));
 }
 
 void skip_element(ByteReader& reader, const PlyElement& element, PlyHeader::Encoding encoding) {
@@ -169,6 +167,25 @@ void skip_element(ByteReader& reader, const PlyElement& element, PlyHeader::Enco
   }
 }
 
+// Elements behind the points are not needed; what is wrong with them shows that the file is damaged.
+void check_rest(ByteReader& reader, std::span<const PlyElement> elements, const PlyHeader& header,
+                std::vector<ReadFinding>& findings) {
+  const bool is_text = header.encoding == PlyHeader::Encoding::kAscii;
+  for (const PlyElement& element : elements) {
+    try {
+      check_count(reader, element, is_text);
+      skip_element(reader, element, header.encoding);
+    } catch (const IoError&) {
+      findings.push_back(
+          {"elements " + vdbmap::quoted(element.name) + " behind the points are cut or damaged", 0, "", true});
+      return;
+    }
+  }
+  const std::string_view rest = reader.bytes(reader.remaining());
+  if (rest.find_first_not_of(std::string_view(" \t\r\n\0", 5)) == std::string_view::npos) return;
+  findings.push_back({"bytes behind the last element passed over", rest.size()});
+}
+
 }  // namespace
 
 ReadResult read_ply(const std::filesystem::path& path) {
@@ -177,16 +194,18 @@ ReadResult read_ply(const std::filesystem::path& path) {
   const auto vertex = std::ranges::find(header.elements, "vertex", &PlyElement::name);
   if (vertex == header.elements.end()) reader.fail_line("the header has no element 'vertex'");
 
-  PointCloud cloud;
-  for (const PlyElement& element : header.elements) {
-    check_count(reader, element, header.encoding == PlyHeader::Encoding::kAscii);
-    if (&element == &*vertex) {
-      cloud = read_vertices(reader, element, header.encoding);
-    } else {
-      skip_element(reader, element, header.encoding);  // also behind the vertices: a file cut short there is damaged
-    }
+  for (auto element = header.elements.begin(); element != vertex; ++element) {
+    check_count(reader, *element, header.encoding == PlyHeader::Encoding::kAscii);
+    skip_element(reader, *element, header.encoding);
   }
-  return finish_reading(path, std::move(cloud));
+  Vertices vertices = read_vertices(reader, *vertex, header);
+  std::vector<ReadFinding>& findings = vertices.read.findings;
+  if (vertices.count < vertex->count) {
+    findings.push_back(missing_points(vertex->count, vertices.count));
+  } else {
+    check_rest(reader, {vertex + 1, header.elements.end()}, header, findings);
+  }
+  return std::move(vertices.read);
 }
 
 }  // namespace vdbmap

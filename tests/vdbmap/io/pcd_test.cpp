@@ -119,14 +119,60 @@ TEST_F(Pcd, DropsAndCountsPointsThatAreNotFinite) {
   EXPECT_EQ(error(Header{"binary", "0"}), "scan.pcd: the file holds no points");
 }
 
-TEST_F(Pcd, RefusesPromisesThatTheFileCannotKeep) {
-  for (const std::string data : {"ascii", "binary", "binary_compressed"}) {
+TEST_F(Pcd, KeepsThePointsThatAreThereWhereTheHeaderPromisesMore) {
+  const std::string numbers = raw(1.0f, 2.0f, 3.0f, 4.0f, 5.0f, 6.0f);
+  const std::pair<std::string, std::string> data[] = {
+      {"ascii", "1 2 3\n4 5 6\n"},
+      {"binary", numbers + "cut"},
+      {"binary_compressed", compressed(raw(1.0f, 4.0f, 2.0f, 5.0f, 3.0f, 6.0f))}};
+  for (const auto& [encoding, bytes] : data) {
     for (const std::string count : {"30", "2147483648", "9223372036854775808", "18446744073709551615"}) {
-      const std::string message = error(Header{data, count} + compressed(raw(1.0f, 2.0f, 3.0f, 4.0f, 5.0f, 6.0f)));
-      EXPECT_TRUE(message.starts_with("scan.pcd:10: the header promises " + count + " points, the file holds at most"))
-          << message;
+      const ReadResult result = read(Header{encoding, count} + bytes);
+      EXPECT_EQ(result.cloud.positions, (std::vector<Eigen::Vector3d>{{1, 2, 3}, {4, 5, 6}})) << encoding;
+      EXPECT_EQ(result.findings, std::vector<ReadFinding>{missing_points(std::stoull(count), 2)});
+      const std::string message = error(Header{encoding, count});
+      if (encoding != "binary_compressed") {
+        EXPECT_TRUE(
+            message.starts_with("scan.pcd:10: the header promises " + count + " points, the file holds at most"))
+            << message;
+      }
     }
   }
+}
+
+TEST_F(Pcd, HeadersMayBeUnusual) {
+  const std::string header =
+      "version .7\nfields  x  y z \n\nsize 4 4 4\ntype f f f\nwidth 2\nheight 1\npoints 2\ndata ASCII\n";
+  for (const std::string first : {"", "\xef\xbb\xbf", ".PCD v0.7 - Point Cloud Data file format\n"}) {
+    EXPECT_EQ(read_points(test::write_raw(folder_ / "any", first + header + "1 2 3\n4 5 6\n")).cloud.size(), 2U);
+  }
+  EXPECT_EQ(read("FIELDS X Y Z\nSIZE 4 4 4\nTYPE F F F\nPOINTS 1\nDATA ascii\n1 2 3").cloud.size(), 1U);
+}
+
+TEST_F(Pcd, TheDataSayHowManyPointsThereAreWhereTheHeaderContradictsItself) {
+  const std::string header = "FIELDS x y z\nSIZE 4 4 4\nTYPE F F F\n";
+  for (const char* counts : {"WIDTH 2\nHEIGHT 1\nPOINTS 3\n", "WIDTH 3\nHEIGHT 1\nPOINTS 2\n"}) {
+    const ReadResult result = read(header + counts + "DATA ascii\n1 2 3\n4 5 6\n");
+    EXPECT_EQ(result.cloud.size(), 2U);
+    EXPECT_TRUE(result.findings.at(0).is_damage);
+  }
+}
+
+TEST_F(Pcd, ColorsOfEveryTypeAreScaledByWhatTheyAre) {
+  const auto color = [&](const std::string& size, const std::string& type, const std::string& values) {
+    const Header header{
+        "ascii", "1", " red green blue", " " + size + " " + size + " " + size, " " + type + " " + type + " " + type,
+        " 1 1 1"};
+    return read(header + "1 2 3 " + values + "\n").cloud.colors.at(0);
+  };
+  const Rgb16 expected{65535, 128 * 257, 0};
+  EXPECT_EQ(color("1", "U", "255 128 0"), expected);
+  EXPECT_EQ(color("2", "U", "255 128 0"), expected);
+  EXPECT_EQ(color("4", "U", "255 128 0"), expected);
+  EXPECT_EQ(color("4", "F", "255 128 0"), expected);
+  EXPECT_EQ(color("4", "F", "1 0.50196 0"), expected);
+  EXPECT_EQ(color("2", "U", "65535 128 0"), (Rgb16{65535, 128, 0}));
+  EXPECT_EQ(color("4", "F", "65535 128 0"), (Rgb16{65535, 128, 0}));
 }
 
 TEST_F(Pcd, RefusesSizesWhoseProductOverflows) {
@@ -139,7 +185,7 @@ TEST_F(Pcd, RefusesSizesWhoseProductOverflows) {
   EXPECT_EQ(error(fields + "1\nWIDTH 4294967296\nHEIGHT 4294967296\nPOINTS 0\nDATA binary\n"),
             "scan.pcd:5: WIDTH x HEIGHT exceeds 2^64");
   EXPECT_EQ(error(fields + "1\nWIDTH 2\nHEIGHT 2\nPOINTS 5\nDATA binary\n"),
-            "scan.pcd:7: POINTS differs from WIDTH x HEIGHT = 4");
+            "scan.pcd:7: the header promises 5 points, the file holds at most 0");
 }
 
 TEST_F(Pcd, RefusesDamagedCompressedData) {
@@ -148,7 +194,7 @@ TEST_F(Pcd, RefusesDamagedCompressedData) {
             "scan.pcd: byte 183: the file ends too early: expected 4 more bytes, found 1");
   EXPECT_EQ(error(header + raw(4u, 12u) + "\x20\x20\x20\x20"), "scan.pcd: byte 183: not LZF data of 12 bytes");
   EXPECT_EQ(error(header + raw(4u, 13u) + "abcd"),
-            "scan.pcd: byte 183: the data expand to 13 bytes, the header describes 12");
+            "scan.pcd: byte 183: the data expand to 13 bytes, the header describes 1 points of 12");
   EXPECT_EQ(error(Header{"binary_compressed", "300000000"} + raw(4u, 3600000000u) + "abcd"),
             "scan.pcd: byte 199: not LZF data of 3600000000 bytes");
 }
@@ -183,9 +229,17 @@ TEST_F(Pcd, NamesTheLineOfWhatIsWrongInTheHeader) {
             "scan.pcd:5: unknown encoding 'morse'");
 }
 
+TEST_F(Pcd, LeavesOutLinesThatAreNoPointsAndNamesTheFirst) {
+  const auto finding = [&](const std::string& line) {
+    const ReadResult result = read(Header{"ascii", "3"} + "1 2 3\n" + line + "\n4 5 6\n");
+    EXPECT_EQ(result.cloud.positions, (std::vector<Eigen::Vector3d>{{1, 2, 3}, {4, 5, 6}})) << line;
+    return result.findings.size() == 1 ? result.findings[0].text() : "no finding";
+  };
+  EXPECT_EQ(finding("4 5 six"), "1 broken points left out (line 13: field 'z' is 'six', expected a number)");
+  EXPECT_EQ(finding("4 5   "), "1 broken points left out (line 13: the line ends before field 'z')");
+}
+
 TEST_F(Pcd, NamesTheLineOfWhatIsWrongInTheText) {
-  EXPECT_EQ(error(Header{"ascii", "2"} + "1 2 3\n4 5 six\n"), "scan.pcd:13: field 'z' is 'six', expected a number");
-  EXPECT_EQ(error(Header{"ascii", "2"} + "1 2 3\n4 5   \n"), "scan.pcd:13: the line ends before field 'z'");
   EXPECT_EQ(error(Header{"ascii", "1"} + "1 2 3 4\n"), "scan.pcd:12: found '4' after the last field");
 }
 
