@@ -56,15 +56,15 @@ std::vector<BrokenInput> broken_inputs() {
        }},
       {"OnlyNan", "bad.xyz: none of the 2 points is finite",
        [](const Folder& f) { return Arguments{write_raw(f / "bad.xyz", "nan nan nan\n1 inf 1\n")}; }},
-      {"Truncated", "bad.ply:3: the header promises 100 elements",
+      {"Truncated", "bad.ply: 1 points that the header promises are missing (it promises 100, the file holds 99)",
        [](const Folder& f) {
          write_ply(f / "bad.ply", scan(1, 100));
-         return Arguments{truncated(f / "bad.ply", 1)};
+         return Arguments{truncated(f / "bad.ply", 1), "--strict"};
        }},
       {"TruncatedScan", "bad.bin: ",
        [](const Folder& f) {
          write_kitti_bin(f / "bad.bin", scan(1, 100));
-         return Arguments{truncated(f / "bad.bin", 3)};
+         return Arguments{truncated(f / "bad.bin", 3), "--strict"};
        }},
       {"BadFileAfterAGoodOne", "bad.ply: ",
        [](const Folder& f) {

@@ -36,14 +36,23 @@ std::string_view first_data_line(std::string_view front) {
   return {};
 }
 
+bool is_ply_header(std::string_view front) {
+  const bool is_ply = lower_case(front.substr(0, 3)) == "ply" && front.size() > 3;
+  return is_ply && std::string_view(" \t\r\n").find(front[3]) != std::string_view::npos;
+}
+
+// Keywords in small letters begin other texts too: the last line of the header must be there.
 bool is_pcd_header(std::string_view front) {
   std::string_view line = first_data_line(front);
   const std::string_view keyword = next_word(line);
-  return front.starts_with("# .PCD") || keyword == "VERSION" || keyword == "FIELDS";
+  if (front.starts_with("# .PCD") || keyword == ".PCD" || keyword == "VERSION" || keyword == "FIELDS") return true;
+  const std::string lower = lower_case(keyword);
+  const bool is_keyword = lower == "version" || lower == "fields" || lower == "columns";
+  return is_keyword && lower_case(front).find("\ndata ") != std::string::npos;
 }
 
 std::optional<PointFormat> format_of_magic(std::string_view front) {
-  if (front.starts_with("ply\n") || front.starts_with("ply\r")) return PointFormat::kPly;
+  if (is_ply_header(front)) return PointFormat::kPly;
   if (front.starts_with("LASF")) return PointFormat::kLas;
   if (is_packet_capture(front)) return PointFormat::kVlp16Pcap;
   if (is_pcd_header(front)) return PointFormat::kPcd;
@@ -69,10 +78,11 @@ bool begins_with_number(std::string_view line) {
 
 std::optional<PointFormat> format_of_extension(const std::filesystem::path& path) {
   static const std::map<std::string_view, PointFormat> kFormats = {
-      {".ply", PointFormat::kPly},        {".pcd", PointFormat::kPcd},          {".las", PointFormat::kLas},
-      {".laz", PointFormat::kLas},        {".bin", PointFormat::kKittiBin},     {".xyz", PointFormat::kXyz},
-      {".csv", PointFormat::kXyz},        {".asc", PointFormat::kXyz},          {".txt", PointFormat::kXyz},
-      {".pcap", PointFormat::kVlp16Pcap}, {".pcapng", PointFormat::kVlp16Pcap},
+      {".ply", PointFormat::kPly},          {".pcd", PointFormat::kPcd},      {".las", PointFormat::kLas},
+      {".laz", PointFormat::kLas},          {".bin", PointFormat::kKittiBin}, {".xyz", PointFormat::kXyz},
+      {".csv", PointFormat::kXyz},          {".asc", PointFormat::kXyz},      {".txt", PointFormat::kXyz},
+      {".pts", PointFormat::kXyz},          {".ptx", PointFormat::kXyz},      {".pcap", PointFormat::kVlp16Pcap},
+      {".pcapng", PointFormat::kVlp16Pcap},
   };
   std::string extension = path.extension().string();
   for (char& c : extension) c = static_cast<char>(std::tolower(static_cast<unsigned char>(c)));
@@ -81,8 +91,9 @@ std::optional<PointFormat> format_of_extension(const std::filesystem::path& path
 }
 
 PointFormat detect_point_format(const std::filesystem::path& path) {
-  const std::string front = read_front(path, kFrontSize);
-  if (front.empty()) throw IoError::malformed(path, "the file is empty");
+  const std::string bytes = read_front(path, kFrontSize);
+  const std::string_view front = without_byte_order_mark(bytes);
+  if (bytes.empty()) throw IoError::malformed(path, "the file is empty");
   if (const auto format = format_of_magic(front)) return *format;
   if (is_text(front) && begins_with_number(first_data_line(front))) return PointFormat::kXyz;
   if (const auto format = format_of_extension(path)) return *format;

@@ -1,7 +1,11 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "vdbmap/io/point_reader.h"
 
+#include <algorithm>
+#include <cmath>
+
 #include "vdbmap/core/error.h"
+#include "vdbmap/core/voxel_sums.h"
 #include "vdbmap/io/kitti_bin.h"
 #include "vdbmap/io/las.h"
 #include "vdbmap/io/pcd.h"
@@ -24,13 +28,20 @@ ReadResult read_any(const std::filesystem::path& path, const ReadOptions& option
     case PointFormat::kLas:
       return read_las(path);
     case PointFormat::kKittiBin:
-      return read_kitti_bin(path);
+      return read_kitti_bin(path, options.bin_columns, options.bin_type);
     case PointFormat::kXyz:
-      return read_xyz(path);
+      return read_xyz(path, options.columns);
     case PointFormat::kVlp16Pcap:
       return read_vlp16_pcap(path, options);
   }
   throw IoError::malformed(path, "not a point file");
+}
+
+void note_large_intensities(ReadResult& read) {
+  const auto is_large = [](float intensity) { return std::abs(intensity) > static_cast<float>(kLargestIntensity); };
+  const auto count = std::ranges::count_if(read.cloud.intensities, is_large);
+  if (count > 0)
+    read.findings.push_back({"intensities beyond 2^39, which a map leaves out", static_cast<std::size_t>(count)});
 }
 
 }  // namespace
@@ -44,6 +55,7 @@ void refuse_damage(const std::filesystem::path& path, const std::vector<ReadFind
 ReadResult read_points(const std::filesystem::path& path, const ReadOptions& options) {
   ReadResult read = read_any(path, options);
   drop_points_at_origin(path, read, options.is_in_sensor_frame);
+  note_large_intensities(read);
   if (options.strict) refuse_damage(path, read.findings);
   return read;
 }

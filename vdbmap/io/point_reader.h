@@ -4,11 +4,13 @@
 #include <cstddef>
 #include <filesystem>
 #include <optional>
+#include <string>
 #include <vector>
 
 #include "vdbmap/core/label_scheme.h"
 #include "vdbmap/core/point_cloud.h"
 #include "vdbmap/io/read_finding.h"
+#include "vdbmap/io/scalar_type.h"
 #include "vdbmap/io/sensor_choice.h"
 
 namespace vdbmap {
@@ -18,6 +20,9 @@ struct ReadOptions {
   bool strict = false;              ///< damage is an error, not a finding
   bool is_in_sensor_frame = false;  ///< then points at the origin are no measurements: see drop_points_at_origin()
   std::optional<SensorChoice> sensor = {};  ///< of a packet capture; nothing: the first
+  std::vector<std::string> columns = {};  ///< of text tables, as check_columns() knows them; empty: what the file says
+  std::vector<std::string> bin_columns = {};  ///< of .bin files; empty: what the numbers say
+  std::optional<ScalarType> bin_type = {};    ///< of .bin files: float32 or float64; nothing: what the numbers say
 };
 
 /// What a point file held.
