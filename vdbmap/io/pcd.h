@@ -8,7 +8,8 @@
 namespace vdbmap {
 
 /// Reads a PCD file: ascii, binary or binary_compressed, numbers of any type. Fields that a PointCloud has no place for
-/// are passed over, as is VIEWPOINT. Throws IoError.
+/// are passed over, as is VIEWPOINT. Of a file with fewer points than its header promises, or with broken lines of
+/// text, the whole points are kept as read_ply() does. Throws IoError.
 ReadResult read_pcd(const std::filesystem::path& path);
 
 enum class PcdEncoding { kAscii, kBinary, kBinaryCompressed };

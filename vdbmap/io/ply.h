@@ -8,7 +8,10 @@
 namespace vdbmap {
 
 /// Reads the vertices of a PLY file: ascii, binary little or big endian, numbers of any type. Other elements and
-/// properties are passed over, lists too. Throws IoError.
+/// properties are passed over, lists too. In text, points may share lines or span them. Of a file that ends too early
+/// the whole points are kept, of a text all lines that hold points; a value that is no number is missing (NaN, and 0 of
+/// colours, rings and labels). The findings count what is left out. Throws IoError where no point is whole, or more
+/// lines of a text are broken than whole.
 ReadResult read_ply(const std::filesystem::path& path);
 
 enum class PlyEncoding { kAscii, kBinaryLittleEndian };

@@ -21,6 +21,12 @@ std::vector<std::optional<PointField>> fields_of(const std::vector<WordColumn>& 
 
 bool is_blank(std::string_view line) { return next_word(line).empty(); }
 
+std::size_t count_words(std::string_view line) {
+  std::size_t count = 0;
+  while (!next_word(line).empty()) ++count;
+  return count;
+}
+
 }  // namespace
 
 WordPoints::WordPoints(std::vector<WordColumn> columns, std::string noun)
@@ -45,7 +51,7 @@ bool WordPoints::are_lines(ByteReader& file) const {
   std::size_t num_short = 0;
   while (num_lines < kSampleLines && !rest.empty()) {
     const std::size_t end = std::min(rest.find(line_end), rest.size());
-    const std::size_t num_words = split_words(rest.substr(0, end)).size();
+    const std::size_t num_words = count_words(rest.substr(0, end));
     rest.remove_prefix(std::min(end + 1, rest.size()));
     num_lines += num_words > 0 ? 1 : 0;
     num_short += num_words > 0 && num_words < words_per_point_ ? 1 : 0;
@@ -105,7 +111,7 @@ std::string WordPoints::try_point(const ByteReader& file, std::string_view& rest
 void WordPoints::read_line(const ByteReader& file, std::string_view line, std::uint64_t most) {
   std::string_view rest = line;
   std::string reason = try_point(file, rest);
-  if (reason.empty() && !is_blank(rest) && !has_lists_ && split_words(line).size() % words_per_point_ != 0) {
+  if (reason.empty() && !is_blank(rest) && !has_lists_ && count_words(line) % words_per_point_ != 0) {
     reason = "found " + quoted(next_word(rest)) + " after the last " + noun_;
   }
   while (reason.empty()) {

@@ -2,7 +2,6 @@
 #include "vdbmap/io/xyz_preamble.h"
 
 #include <algorithm>
-#include <array>
 #include <utility>
 
 #include "vdbmap/core/error.h"
@@ -16,6 +15,14 @@ bool is_first_row(std::string_view line, const TableFormat& format) {
   const std::vector<std::string_view> cells = split_cells(without_comment(line, format), format);
   if (is_row(cells, format)) return true;
   return cells.size() > 1 && cell_number(cells[0], format) && cell_number(cells[1], format);
+}
+
+// As long as a row and with a number in it, but not three: no names have numbers among them.
+bool is_broken_row(std::string_view line, const TableFormat& format, std::size_t num_columns) {
+  const std::vector<std::string_view> cells = split_cells(without_comment(line, format), format);
+  const bool has_number =
+      std::ranges::any_of(cells, [&](std::string_view cell) { return cell_number(cell, format).has_value(); });
+  return cells.size() > 1 && cells.size() == num_columns && has_number;
 }
 
 void note_count(const ByteReader& file, XyzPreamble& preamble, std::uint64_t count) {
@@ -40,8 +47,10 @@ void note_header(const ByteReader& file, XyzPreamble& preamble, XyzHeader names)
   if (preamble.header && !preamble.header->is_comment && !names.is_comment && names.names != preamble.header->names) {
     file.fail_line("another header with x, y and z, of other columns");
   }
-  const bool is_better = !preamble.header || preamble.header->is_comment || !names.is_comment;
-  if (is_better) preamble.header = std::move(names);
+  // Of several comments the last one counts, unless it only talks of the columns.
+  const bool is_comment_on_columns = names.is_comment && names.is_sentence();
+  const bool is_better = preamble.header && preamble.header->is_comment && !is_comment_on_columns;
+  if (!preamble.header || !names.is_comment || is_better) preamble.header = std::move(names);
 }
 
 }  // namespace
@@ -52,7 +61,7 @@ std::optional<std::uint64_t> parse_count_line(std::string_view line, const Table
   return next_word(rest).empty() ? parse_count(word) : std::nullopt;
 }
 
-XyzPreamble read_preamble(ByteReader& file, const TableFormat& format) {
+XyzPreamble read_preamble(ByteReader& file, const TableFormat& format, std::size_t num_columns) {
   XyzPreamble preamble;
   while (file.remaining() > 0) {
     const bool is_first_line = file.offset() == 0;
@@ -71,6 +80,9 @@ XyzPreamble read_preamble(ByteReader& file, const TableFormat& format) {
     names.line = file.line();
     if (names.names_coordinates()) {
       note_header(file, preamble, std::move(names));
+    } else if (!names.is_comment && is_broken_row(line, format, num_columns)) {
+      preamble.first_row = line;
+      return preamble;
     } else {
       note_text(file, preamble, line, std::move(names));
     }

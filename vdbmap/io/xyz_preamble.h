@@ -30,8 +30,9 @@ struct XyzPreamble {
   std::optional<std::string_view> first_row = {};
 };
 
-/// Reads up to the first row of a table of points. Throws IoError for two headers that differ, and for a PTX scan.
-XyzPreamble read_preamble(ByteReader& file, const TableFormat& format);
+/// Reads up to the first row of a table of points, whose rows have `num_columns` as a rule. Throws IoError for two
+/// headers that differ, and for a PTX scan.
+XyzPreamble read_preamble(ByteReader& file, const TableFormat& format, std::size_t num_columns);
 
 /// Throws IoError for text that is no table of points but would look like one: meshes, grids, UTF-16.
 void refuse_foreign_text(const ByteReader& file);

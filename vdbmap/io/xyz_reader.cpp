@@ -29,7 +29,7 @@ void refuse_doubtful_comma(const ByteReader& file, const TableSample& sample) {
 // Why there is no row at all.
 ReadResult refuse_without_rows(ByteReader& file) {
   file.seek(0);
-  const XyzPreamble preamble = read_preamble(file, {});
+  const XyzPreamble preamble = read_preamble(file, {}, 0);
   constexpr const char* kNumbers =
       "no line holds three numbers, parted by blanks, commas, semicolons or tabs and without marks between thousands";
   if (preamble.first_row) file.fail_line(kNumbers);
@@ -98,7 +98,7 @@ ReadResult read_xyz(const std::filesystem::path& path, const std::vector<std::st
   if (!sample) return refuse_without_rows(file);
   refuse_doubtful_comma(file, *sample);
 
-  const XyzPreamble preamble = read_preamble(file, sample->format);
+  const XyzPreamble preamble = read_preamble(file, sample->format, sample->num_columns);
   if (!preamble.first_row) return refuse_without_rows(file);
   XyzRows rows(choose_layout(file, preamble, *sample, columns), sample->format, preamble.header, preamble.count);
   rows.read(file, *preamble.first_row);

@@ -196,6 +196,15 @@ TEST_F(Xyz, RowsThatAreBrokenAreLeftOutAndTheFirstIsNamed) {
   EXPECT_EQ(first_of("words"), "1 broken points left out (line 2: column 1: 'words' is not a number)");
 }
 
+TEST_F(Xyz, TheFirstRowMayBeBrokenToo) {
+  for (const char* text : {"bad 2 3\n1 2 3\n4 5 6\n", "x y z\nbad 2 3\n1 2 3\n4 5 6\n", "1 2\n1 2 3\n4 5 6\n",
+                           "# x y z\n1 b 3\n1 2 3\n4 5 6\n"}) {
+    const ReadResult result = read(text);
+    EXPECT_EQ(result.cloud.positions, (Positions{{1, 2, 3}, {4, 5, 6}})) << text;
+    EXPECT_EQ(result.dropped, std::vector<std::size_t>{0}) << text;
+  }
+}
+
 TEST_F(Xyz, PlacesOfBrokenAndInfinitePointsCountAllRows) {
   const ReadResult result = read("1,2,3\nnan,2,3\nbad,2,3\n4,5,6\n1,,3\nnan,2,3\n7,8,9\n1,2,3\n");
   EXPECT_EQ(result.dropped, (std::vector<std::size_t>{1, 2, 4, 5}));
