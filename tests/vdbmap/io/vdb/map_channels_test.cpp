@@ -216,7 +216,8 @@ TEST_F(MapChannels, TransformsOtherThanTheLevelsAreNamed) {
             "channels.vdb: grid 'mean' has a transform other than the level's: expected uniform scale 0.100000 and "
             "translation 0.050000 on each axis");
   made.count->setTransform(openvdb::math::Transform::createLinearTransform(0.3));
-  EXPECT_NE(error(made.grids()).find("has voxels of 0.300000 m, expected 0.001 to 8 m that divide 8 m"), std::string::npos);
+  EXPECT_NE(error(made.grids()).find("has voxels of 0.300000 m, expected 0.001 to 8 m that divide 8 m"),
+            std::string::npos);
   made.count->transform().preRotate(0.5);
   EXPECT_NE(error(made.grids()), "no error");
 }
