@@ -11,12 +11,12 @@ namespace vdbmap::cli {
 namespace {
 
 // Endings that programs choose a reader by.
-constexpr std::array<std::string_view, 57> kKnownEndings = {
-    ".vdb",  ".nvdb",    ".png", ".jpg", ".jpeg", ".jpe",  ".jp2",   ".tif", ".tiff", ".bmp",  ".gif", ".webp",
-    ".avif", ".svg",     ".pdf", ".eps", ".exr",  ".hdr",  ".tga",   ".ppm", ".pgm",  ".pnm",  ".ply", ".pcd",
-    ".las",  ".laz",     ".xyz", ".csv", ".asc",  ".pts",  ".ptx",   ".e57", ".txt",  ".bin",  ".obj", ".stl",
-    ".gltf", ".glb",     ".fbx", ".usd", ".abc",  ".pcap", ".label", ".npy", ".npz",  ".json", ".xml", ".yaml",
-    ".yml",  ".geojson", ".zip", ".gz",  ".bz2",  ".xz",   ".zst",   ".tar", ".html"};
+constexpr std::array<std::string_view, 56> kKnownEndings = {
+    ".vdb",     ".nvdb", ".png", ".jpg", ".jpeg", ".jpe",  ".jp2", ".tif", ".tiff", ".bmp", ".gif",  ".webp",
+    ".avif",    ".svg",  ".pdf", ".eps", ".exr",  ".hdr",  ".tga", ".ppm", ".pgm",  ".pnm", ".ply",  ".pcd",
+    ".las",     ".laz",  ".xyz", ".csv", ".asc",  ".pts",  ".ptx", ".e57", ".txt",  ".bin", ".obj",  ".stl",
+    ".gltf",    ".glb",  ".fbx", ".usd", ".abc",  ".pcap", ".npy", ".npz", ".json", ".xml", ".yaml", ".yml",
+    ".geojson", ".zip",  ".gz",  ".bz2", ".xz",   ".zst",  ".tar", ".html"};
 
 std::string ending_of(const std::filesystem::path& path) {
   std::string ending = path.extension().string();

@@ -4,6 +4,7 @@
 #include <limits>
 #include <memory>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include <gtest/gtest.h>
@@ -77,7 +78,8 @@ TEST_F(HostileVoxels, MoreVoxelsThanTheFileCanHold) {
     const auto descriptor = grid.tree().beginLeaf()->attributeSet().descriptorPtr();
     for (int i = 1; i <= 100; ++i) {
       Leaf& leaf = *grid.tree().touchLeaf(openvdb::Coord(8 * i, 0, 0));
-      leaf.replaceAttributeSet(new openvdb::points::AttributeSet(descriptor, 32'768), /*allowMismatchingDescriptors=*/true);
+      leaf.replaceAttributeSet(new openvdb::points::AttributeSet(descriptor, 32'768),
+                               /*allowMismatchingDescriptors=*/true);
       set_offsets(leaf, 64, 32'768);
     }
   });
@@ -95,6 +97,26 @@ TEST_F(HostileVoxels, CellsWhoseVoxelsHaveNoIndex) {
     });
     EXPECT_EQ(message, "map.vdb: grid 'voxels' has a voxel beyond the addressable range") << cell;
     EXPECT_FALSE(check_passes());
+  }
+}
+
+// OpenVDB's own reader goes on behind the end of a file, making nodes of nothing.
+TEST_F(HostileVoxels, NodesThatTheFileDoesNotHold) {
+  const auto density = openvdb::FloatGrid::create();
+  density->setName("density");
+  density->fill({openvdb::Coord(0), openvdb::Coord(9)}, 1.0F);
+  openvdb::io::File(folder_ / "whole.vdb").write(openvdb::GridCPtrVec{density});
+  const std::string whole = test::read_raw(folder_ / "whole.vdb");
+  // The root: background, number of tiles, number of nodes, and of the only node its origin and which children it has.
+  const std::size_t root = whole.find(test::raw(0.0F, 0U, 1U, 0, 0, 0));
+  ASSERT_NE(root, std::string::npos);
+  const std::string many = test::raw(0xffffffffU);
+  for (const auto& [place, bytes] :
+       {std::pair(root + 4, many), std::pair(root + 8, many), std::pair(root + 24, std::string(4096, '\xff'))}) {
+    std::string broken = whole;
+    test::write_raw(folder_ / "broken.vdb", broken.replace(place, bytes.size(), bytes));
+    EXPECT_EQ(test::io_error_of([&] { read_vdb(folder_ / "broken.vdb"); }),
+              "broken.vdb: is damaged: a grid goes on beyond the end of the file");
   }
 }
 
