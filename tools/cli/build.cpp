@@ -84,11 +84,11 @@ void add_label_options(CLI::App& app, BuildCommandOptions& options) {
 
 void add_range_options(CLI::App& app, BuildCommandOptions& options, CLI::Option* poses) {
   app.add_option("--min-range", options.min_range,
-                 "Leave out points nearer to the sensor [m], its carrier's for example; with --poses only")
+                 "Leave out points nearer to the sensor [m], its carrier's for example")
       ->check(CLI::Range(0.0, 1000.0).description(""))
       ->type_name("R")
       ->needs(poses);
-  app.add_option("--max-range", options.max_range, "Leave out points farther from the sensor [m]; with --poses only")
+  app.add_option("--max-range", options.max_range, "Leave out points farther from the sensor [m]")
       ->check(CLI::Range(0.0, 1e6).description(""))
       ->type_name("R")
       ->needs(poses);

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "vdbmap/io/scan_sequence.h"
 
+#include <algorithm>
 #include <stdexcept>
 #include <utility>
 
@@ -36,6 +37,16 @@ bool is_capture(const std::filesystem::path& file) {
   }
 }
 
+// A chosen sensor that no capture holds is an error, not a sequence of scans that cannot be read.
+void check_sensor(const std::vector<std::filesystem::path>& captures, const std::vector<ScanPlace>& scans,
+                  const ReadOptions& options) {
+  if (captures.empty()) {
+    throw std::invalid_argument("sensor " + text_of(*options.sensor) + " is chosen, but no file is a packet capture");
+  }
+  const auto is_turn = [](const ScanPlace& scan) { return scan.turn.has_value(); };
+  if (std::ranges::none_of(scans, is_turn)) read_points(captures.front(), options);  // says why
+}
+
 }  // namespace
 
 std::string ScanPlace::name() const {
@@ -44,17 +55,15 @@ std::string ScanPlace::name() const {
 
 std::vector<ScanPlace> list_scans(const std::vector<std::filesystem::path>& files, const ReadOptions& options) {
   std::vector<ScanPlace> scans;
-  bool has_captures = false;
+  std::vector<std::filesystem::path> captures;
   for (const std::filesystem::path& file : files) {
     const bool is_of_turns = is_capture(file);
-    has_captures |= is_of_turns;
+    if (is_of_turns) captures.push_back(file);
     const std::size_t num_turns = is_of_turns ? count_turns(file, options) : 0;
     for (std::size_t turn = 0; turn < num_turns; ++turn) scans.push_back({file, turn});
     if (num_turns == 0) scans.push_back({file, std::nullopt});
   }
-  if (options.sensor && !has_captures) {
-    throw std::invalid_argument("sensor " + text_of(*options.sensor) + " is chosen, but no file is a packet capture");
-  }
+  if (options.sensor) check_sensor(captures, scans, options);
   return scans;
 }
 

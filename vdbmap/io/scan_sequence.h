@@ -27,8 +27,8 @@ struct ScanPlace {
 
 /// The scans in the point files, in order: each file is one, of a Velodyne capture each turn that has points. To count
 /// its turns a capture is decoded once, one turn at a time. A capture without a turn that the options allow is one
-/// scan: reading it says what is wrong with it. Throws IoError where a file cannot be opened, and std::invalid_argument
-/// where the options choose a sensor and no file is a capture.
+/// scan: reading it says what is wrong with it. Throws IoError where a file cannot be opened and where no capture holds
+/// the sensor that the options choose, and std::invalid_argument where they choose one and no file is a capture.
 std::vector<ScanPlace> list_scans(const std::vector<std::filesystem::path>& files, const ReadOptions& options = {});
 
 /// Reads scans of a sequence. In the order of the sequence, left-out scans included, each capture is gone through once;

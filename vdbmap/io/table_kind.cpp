@@ -21,11 +21,11 @@ constexpr double kUnitTolerance = 1e-2;      // of vectors and quaternions that 
 constexpr std::size_t kNumRowsLookedAt = 3;  // a count may stand on top
 
 // Words of file names that are no scans.
-constexpr std::array<std::string_view, 31> kTableWords = {
-    "annotations", "boxes",    "calib",      "calibration",  "extrinsic",  "extrinsics", "gnss",     "gps",
-    "groundtruth", "imu",      "ins",        "intrinsic",    "intrinsics", "labels",     "metadata", "navsat",
-    "odom",        "odometry", "oxts",       "pose",         "poses",      "readme",     "times",    "timestamps",
-    "tracklets",   "traj",     "trajectory", "trajectories", "transform",  "transforms", "truth"};
+constexpr std::array<std::string_view, 27> kTableWords = {
+    "annotations", "boxes",       "calib",    "calibration", "extrinsic",    "extrinsics", "gnss",
+    "gps",         "groundtruth", "imu",      "intrinsic",   "intrinsics",   "labels",     "metadata",
+    "navsat",      "odom",        "odometry", "oxts",        "poses",        "readme",     "times",
+    "timestamps",  "tracklets",   "traj",     "trajectory",  "trajectories", "truth"};
 
 // Names of columns that points do not have.
 constexpr std::array<std::string_view, 22> kForeignColumns = {

@@ -135,7 +135,11 @@ TEST_F(ScanSequence, ACaptureOfNoPointsIsOneScanThatCannotBeRead) {
 TEST_F(ScanSequence, AChosenSensorNeedsACapture) {
   ReadOptions options;
   options.sensor = parse_sensor_choice("192.168.1.201");
-  EXPECT_EQ(list_scans({capture("a.pcap")}, options).size(), 4U);
+  const std::filesystem::path path = capture("a.pcap");
+  EXPECT_EQ(list_scans({path}, options).size(), 4U);
+  options.sensor = parse_sensor_choice("192.168.1.7");
+  EXPECT_EQ(test::io_error_of([&] { list_scans({path}, options); }),
+            "a.pcap: no sensor at 192.168.1.7, only 192.168.1.201:2368");
   EXPECT_THROW(list_scans({write_raw(folder_ / "a.xyz", "1 2 3\n")}, options), std::invalid_argument);
 }
 
