@@ -46,7 +46,7 @@ TEST(OutputEnding, ThatStandsForNoFormatIsAccepted) {
 }
 
 TEST(OutputEnding, OfAnotherFormatIsRefused) {
-  for (const std::string name : {"p.jpg", "p.JPEG", "p.tif", "p.vdb", "p.pdf", "p.svg"}) {
+  for (const std::string name : {"p.jp2", "p.WEBP", "p.tif", "p.vdb", "p.pdf", "p.svg"}) {
     EXPECT_FALSE(is_accepted(name, kPictureKind)) << name;
   }
   for (const std::string name : {"m.las", "m.ply", "m.png", "m.xyz", "m.vdb.gz", "m.nvdb", "m.json", "m.txt"}) {
@@ -68,8 +68,9 @@ class Output : public MapCommand {
 TEST_F(Output, IsRefusedInOneLineWhereItsNameStandsForAnotherFormat) {
   const std::string map = built("map.vdb", points({{1, 2, 3}}));
   const std::size_t before = num_files();
-  expect_error(vdbmap({"render", map, "-o", path("p.jpg")}), ExitCode::kWrongUsage,
-               "p.jpg: is written as a PNG picture, but '.jpg' stands for another format: choose a name with .png");
+  expect_error(vdbmap({"render", map, "-o", path("p.tif")}), ExitCode::kWrongUsage,
+               "p.tif: is written as a PNG or JPEG picture, but '.tif' stands for another format: choose a name with "
+               ".png");
   expect_error(vdbmap({"build", path("map.vdb.ply"), "-o", path("m.las")}), ExitCode::kWrongUsage, "an OpenVDB file");
   expect_error(vdbmap({"export", map, "--channels", path("c.ply")}), ExitCode::kWrongUsage, "an OpenVDB file");
   EXPECT_EQ(num_files(), before);

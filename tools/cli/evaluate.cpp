@@ -64,7 +64,8 @@ void add_options(CLI::App& app, EvaluateOptions& options) {
       ->check(CLI::NonNegativeNumber.description(""))
       ->type_name("S")
       ->capture_default_str();
-  app.add_option("--plot", options.plot, "Draw the plan view, the histograms and the figures into this .png file")
+  app.add_option("--plot", options.plot,
+                 "Draw the plan view, the histograms and the figures into this .png or .jpg file")
       ->type_name("FILE");
   add_json(app, options);
 }
@@ -106,7 +107,7 @@ void write_plot(const EvaluateOptions& options, const Comparison& poses) {
   if (plot.title.size() > kLongTitle) {
     plot.title = options.estimate.filename().string() + " against " + options.truth.filename().string();
   }
-  write_png(options.plot, registration::plot_trajectory(poses.estimate, poses.truth, plot));
+  write_picture(options.plot, registration::plot_trajectory(poses.estimate, poses.truth, plot));
 }
 
 ExitCode run(const EvaluateOptions& options, const CommonOptions&) {

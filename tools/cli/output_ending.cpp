@@ -27,7 +27,7 @@ std::string ending_of(const std::filesystem::path& path) {
 }  // namespace
 
 const OutputKind kMapKind = {"an OpenVDB file", {".vdb"}};
-const OutputKind kPictureKind = {"a PNG picture", {".png"}};
+const OutputKind kPictureKind = {"a PNG or JPEG picture", {".png", ".jpg", ".jpeg"}};
 const OutputKind kPosesKind = {"poses as text", {".txt"}};
 const OutputKind kPointsKind = {"points", {".ply", ".las", ".xyz"}};
 const OutputKind kJsonKind = {"JSON", {".json", ".txt"}};

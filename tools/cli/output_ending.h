@@ -9,7 +9,7 @@ namespace vdbmap::cli {
 
 /// What a command writes into a file: its name for messages, and the endings that stand for it.
 struct OutputKind {
-  std::string name;                  ///< "a PNG picture"
+  std::string name;                  ///< "an OpenVDB file"
   std::vector<std::string> endings;  ///< lower case, with the dot; the first is recommended
 };
 

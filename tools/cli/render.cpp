@@ -86,7 +86,9 @@ void add_overlay_options(CLI::App& app, RenderCommandOptions& options) {
 
 void add_options(CLI::App& app, RenderCommandOptions& options) {
   app.add_option("MAP", options.map, "The map (.vdb)")->type_name("FILE")->required();
-  app.add_option("-o,--output", options.output, "Write the picture to this .png file")->type_name("FILE")->required();
+  app.add_option("-o,--output", options.output, "Write the picture to this .png or .jpg file")
+      ->type_name("FILE")
+      ->required();
   app.add_option("--view", options.view,
                  "plan (from above), perspective (along the street) or orbit (all of it), [orbit]")
       ->check(CLI::IsMember(names_of(kViews)).description(""))
@@ -159,7 +161,7 @@ ExitCode run(const RenderCommandOptions& options, const CommonOptions& common) {
   const std::chrono::duration<double> duration = std::chrono::steady_clock::now() - start;
   if (result.is_camera_in_voxel)
     spdlog::warn("the camera is inside of a voxel: the picture shows what is seen from there");
-  write_png(options.output, result.image);
+  write_picture(options.output, result.image);
 
   if (common.json) {
     print_json({{"output", options.output.string()},

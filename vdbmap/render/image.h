@@ -58,4 +58,8 @@ std::string png_of(const Image& image);
 /// Writes a PNG file atomically. Throws IoError.
 void write_png(const std::filesystem::path& path, const Image& image);
 
+/// Writes a picture atomically, in the format that its ending stands for: a JPEG file where that is .jpg or .jpeg, in
+/// upper or lower case, else a PNG file. Throws IoError.
+void write_picture(const std::filesystem::path& path, const Image& image);
+
 }  // namespace vdbmap

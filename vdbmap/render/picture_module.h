@@ -22,11 +22,13 @@ struct TextExtent {
   int bottom;
 };
 
+enum class PictureFormat { kPng, kJpeg };
+
 /// What is done by OpenImageIO. It stands in a module of its own, loaded when the first picture is written or lettered:
 /// Debian's OpenImageIO brings 240 libraries along, and every command would start 0.15 s later.
 struct PictureModule {
   /// Fails with a reason, else sets `bytes` and returns "".
-  std::string (*encode_png)(const Image& image, std::string& bytes);
+  std::string (*encode)(const Image& image, PictureFormat format, std::string& bytes);
 
   /// False where the font is missing.
   bool (*measure_text)(const TextLine& line, TextExtent& extent);

@@ -8,6 +8,7 @@
 
 #include "tests/support/folders.h"
 #include "tests/support/picture.h"
+#include "tests/support/raw_files.h"
 #include "vdbmap/core/error.h"
 
 namespace vdbmap {
@@ -33,6 +34,31 @@ TEST(Image, OtherProgramsReadItsPngPixelForPixel) {
     ASSERT_EQ(reread.width(), width);
     ASSERT_EQ(reread.height(), height);
     EXPECT_TRUE(std::equal(image.pixels().begin(), image.pixels().end(), reread.pixels().begin()));
+  }
+}
+
+// Width and height in the frame header of a JPEG file (ITU T.81, B.2.2), after its segments before that.
+std::pair<int, int> size_of_jpeg(const std::string& bytes) {
+  const auto number = [&](std::size_t at) {
+    return static_cast<unsigned char>(bytes.at(at)) << 8 | static_cast<unsigned char>(bytes.at(at + 1));
+  };
+  std::size_t at = 2;
+  while (number(at) < 0xffc0 || number(at) > 0xffc2) at += 2 + static_cast<std::size_t>(number(at + 2));
+  return {number(at + 7), number(at + 5)};
+}
+
+TEST(Image, IsWrittenInTheFormatOfTheEnding) {
+  const test::TemporaryFolder folder;
+  const Image image = gradient(40, 30);
+  for (const char* name : {"a.jpg", "a.JPEG"}) {
+    write_picture(folder / name, image);
+    const std::string bytes = test::read_raw(folder / name);
+    EXPECT_TRUE(bytes.starts_with("\xff\xd8\xff") && bytes.ends_with("\xff\xd9")) << name;
+    EXPECT_EQ(size_of_jpeg(bytes), std::pair(40, 30)) << name;
+  }
+  for (const char* name : {"a.png", "a", "a.old"}) {
+    write_picture(folder / name, image);
+    EXPECT_EQ(test::read_raw(folder / name), png_of(image)) << name;
   }
 }
 

@@ -15,15 +15,21 @@ namespace {
 // bytes.
 constexpr int kCompressionLevel = 3;
 
-std::string encode_png(const Image& image, std::string& bytes) {
+// Letters and thin lines stay as they are seen on the screen.
+constexpr int kJpegQuality = 95;
+
+std::string encode(const Image& image, PictureFormat format, std::string& bytes) {
+  const std::string name = format == PictureFormat::kJpeg ? "jpeg" : "png";
   OIIO::ImageSpec spec(image.width(), image.height(), 3, OIIO::TypeDesc::UINT8);
   spec.attribute("oiio:ColorSpace", "sRGB");
   spec.attribute("png:compressionLevel", kCompressionLevel);
+  spec.attribute("CompressionQuality", kJpegQuality);
+  spec.attribute("jpeg:subsampling", "4:4:4");
 
   std::vector<unsigned char> buffer;
   OIIO::Filesystem::IOVecOutput into_memory(buffer);
-  const auto output = OIIO::ImageOutput::create("png", &into_memory);
-  const bool is_written = output && output->open("picture.png", spec) &&
+  const auto output = OIIO::ImageOutput::create(name, &into_memory);
+  const bool is_written = output && output->open("picture." + name, spec) &&
                           output->write_image(OIIO::TypeDesc::UINT8, image.pixels().data()) && output->close();
   if (!is_written) return output ? output->geterror() : OIIO::geterror();
   bytes.assign(buffer.begin(), buffer.end());
@@ -50,6 +56,6 @@ void cover_text(const TextLine& line, const TextExtent& around, float* coverage)
 }  // namespace vdbmap
 
 extern "C" __attribute__((visibility("default"))) const vdbmap::PictureModule* vdbmap_picture_module() {
-  static const vdbmap::PictureModule module{vdbmap::encode_png, vdbmap::measure_text, vdbmap::cover_text};
+  static const vdbmap::PictureModule module{vdbmap::encode, vdbmap::measure_text, vdbmap::cover_text};
   return &module;
 }
