@@ -58,13 +58,25 @@ void MissingValues::finish(PointCloud& cloud, const std::vector<std::optional<Po
   }
 }
 
-std::optional<std::string> reason_against(const PointField& field, double number) {
-  if (std::isnan(number)) return std::nullopt;
-  if (field.role == FieldRole::kRing && !is_whole_below(number, 65536.0)) return "a whole number from 0 to 65535";
-  if (field.role == FieldRole::kLabel && !is_whole_below(number, 4294967296.0))
-    return "a whole number from 0 to 2^32-1";
-  if (is_color_channel(field.role) && !(number >= 0 && number <= 65535)) return "a number from 0 to 65535";
-  return std::nullopt;
+bool is_possible(const PointField& field, double number) {
+  switch (field.role) {
+    case FieldRole::kRing:
+      return std::isnan(number) || is_whole_below(number, 65536.0);
+    case FieldRole::kLabel:
+      return std::isnan(number) || is_whole_below(number, 4294967296.0);
+    case FieldRole::kRed:
+    case FieldRole::kGreen:
+    case FieldRole::kBlue:
+      return std::isnan(number) || (number >= 0 && number <= 65535);
+    default:
+      return true;
+  }
+}
+
+std::string text_of_possible(const PointField& field) {
+  if (field.role == FieldRole::kRing) return "a whole number from 0 to 65535";
+  if (field.role == FieldRole::kLabel) return "a whole number from 0 to 2^32-1";
+  return is_color_channel(field.role) ? "a number from 0 to 65535" : "a number";
 }
 
 }  // namespace vdbmap

@@ -34,8 +34,11 @@ class MissingValues {
   std::map<std::size_t, OfField> of_field_;
 };
 
-/// What keeps a number from being a value of a field: nothing, or that it is not whole or out of range. NaN is a value:
-/// it is how tables say that one is missing.
-std::optional<std::string> reason_against(const PointField& field, double number);
+/// Whether a number can be a value of a field: of rings and labels whole and in range, of colours in range. NaN can: it
+/// is how tables say that a value is missing.
+bool is_possible(const PointField& field, double number);
+
+/// What the values of a field are: "a whole number from 0 to 65535".
+std::string text_of_possible(const PointField& field);
 
 }  // namespace vdbmap

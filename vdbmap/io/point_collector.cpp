@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "vdbmap/io/point_collector.h"
 
+#include <algorithm>
 #include <span>
 #include <utility>
 
@@ -54,13 +55,15 @@ void PointCollector::store_block() {
 void PointCollector::scale_colors() {
   if (raw_colors_.empty()) return;
   cloud_.colors.resize(raw_colors_.size());
+  std::array<double, kPointsPerBlock> block;
   for (std::optional<PointField>& field : fields_) {
     if (!field || !is_color_channel(field->role)) continue;
     set_color_scale(*field, color_range_);
     const std::size_t channel = channel_of(field->role);
-    for (std::size_t i = 0; i < raw_colors_.size(); ++i) {
-      const double number = static_cast<double>(raw_colors_[i][channel]);
-      store_numbers(cloud_, *field, i, {&number, 1});
+    for (std::size_t first = 0; first < raw_colors_.size(); first += block.size()) {
+      const std::size_t count = std::min(block.size(), raw_colors_.size() - first);
+      for (std::size_t i = 0; i < count; ++i) block[i] = static_cast<double>(raw_colors_[first + i][channel]);
+      store_numbers(cloud_, *field, first, {block.data(), count});
     }
   }
 }

@@ -9,8 +9,6 @@
 namespace vdbmap {
 namespace {
 
-bool is_blank(char c) { return c == ' ' || c == '\t' || c == '\r' || c == '\f' || c == '\v'; }
-
 // A blank that parts no columns; where any number of blanks does, all of them may go.
 bool is_padding(char c, const TableFormat& format) {
   return is_blank(c) && (format.separator == ' ' || c != format.separator);
@@ -74,6 +72,21 @@ std::optional<std::string_view> next_cell(std::string_view& rest, const TableFor
   const std::string_view cell = without_padding_behind(rest.substr(0, end), format);
   rest.remove_prefix(std::min(end + 1, rest.size()));
   return cell;
+}
+
+std::optional<double> next_plain_number(std::string_view& rest, const TableFormat& format) {
+  if (format.has_decimal_comma) return std::nullopt;
+  std::string_view after = rest;
+  skip_padding(after, format);
+  const auto number = cut_plain_number(after, [&](char c) { return c == format.separator || is_padding(c, format); });
+  if (!number) return std::nullopt;
+  if (format.separator != ' ') {
+    skip_padding(after, format);
+    if (!after.empty() && after.front() != format.separator) return std::nullopt;
+    if (!after.empty()) after.remove_prefix(1);
+  }
+  rest = after;
+  return number;
 }
 
 std::vector<std::string_view> split_cells(std::string_view line, const TableFormat& format) {

@@ -27,6 +27,10 @@ std::string_view without_comment(std::string_view line, const TableFormat& forma
 /// separator at the line's end is followed by no cell.
 std::optional<std::string_view> next_cell(std::string_view& rest, const TableFormat& format);
 
+/// next_cell() and cell_number() in one, for numbers in their usual spelling; nothing, and `rest` as it was, for
+/// others.
+std::optional<double> next_plain_number(std::string_view& rest, const TableFormat& format);
+
 /// The cells of a line; of one that ends with a separator there is none behind it. One more than kMostColumns
 /// at most.
 std::vector<std::string_view> split_cells(std::string_view line, const TableFormat& format);

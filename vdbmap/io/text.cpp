@@ -13,8 +13,6 @@ namespace {
 constexpr std::size_t kLongestHeaderLine = 1 << 16;  // [bytes]
 constexpr std::size_t kLongestQuote = 40;            // [characters]
 
-bool is_white_space(char c) { return c == ' ' || (c >= '\t' && c <= '\r'); }
-
 template <typename T>
 std::from_chars_result parse_whole(std::string_view word, T& value) {
   std::from_chars_result result = std::from_chars(word.data(), word.data() + word.size(), value);
@@ -99,8 +97,8 @@ std::string lower_case(std::string_view text) {
 }
 
 std::string_view next_word(std::string_view& rest) {
-  const auto begin = std::find_if_not(rest.begin(), rest.end(), is_white_space);
-  const auto end = std::find_if(begin, rest.end(), is_white_space);
+  const auto begin = std::find_if_not(rest.begin(), rest.end(), is_blank);
+  const auto end = std::find_if(begin, rest.end(), is_blank);
   rest = std::string_view(end, rest.end());
   return std::string_view(begin, end);
 }

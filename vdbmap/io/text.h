@@ -1,10 +1,12 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #pragma once
 
+#include <charconv>
 #include <cstdint>
 #include <optional>
 #include <string>
 #include <string_view>
+#include <system_error>
 #include <vector>
 
 #include "vdbmap/io/byte_reader.h"
@@ -32,6 +34,21 @@ std::string lower_case(std::string_view text);
 /// A whole word as a number: "-1.5", "+2e3", "nan", "inf"; Microsoft's "1.#QNAN", "-1.#IND" and "1.#INF" too.
 /// Independent of the locale.
 std::optional<double> parse_number(std::string_view word);
+
+/// Cuts a number off the front of `rest`, which begins with it, where `is_end(next character)` or nothing follows.
+/// Nothing, and `rest` as it was, in all other cases, also for spellings that only parse_number() knows.
+template <typename IsEnd>
+std::optional<double> cut_plain_number(std::string_view& rest, IsEnd&& is_end) {
+  double value = 0;
+  const char* const end = rest.data() + rest.size();
+  const std::from_chars_result result = std::from_chars(rest.data(), end, value);
+  if (result.ec != std::errc() || (result.ptr != end && !is_end(*result.ptr))) return std::nullopt;
+  rest.remove_prefix(static_cast<std::size_t>(result.ptr - rest.data()));
+  return value;
+}
+
+/// White space.
+inline bool is_blank(char c) { return c == ' ' || (c >= '\t' && c <= '\r'); }
 
 /// A whole word as a number of things: digits only, below 2^64.
 std::optional<std::uint64_t> parse_count(std::string_view word);

@@ -19,7 +19,7 @@ std::vector<std::optional<PointField>> fields_of(const std::vector<WordColumn>& 
   return fields;
 }
 
-bool is_blank(std::string_view line) { return next_word(line).empty(); }
+bool is_blank_line(std::string_view line) { return next_word(line).empty(); }
 
 std::size_t count_words(std::string_view line) {
   std::size_t count = 0;
@@ -35,10 +35,6 @@ WordPoints::WordPoints(std::vector<WordColumn> columns, std::string noun)
       has_lists_(std::ranges::any_of(columns_, &WordColumn::is_list)),
       collector_(fields_of(columns_)) {
   for (const WordColumn& column : columns_) words_per_point_ += column.num_words;
-}
-
-std::string WordPoints::missing_word(std::size_t column) const {
-  return "the line ends before " + noun_ + " " + vdbmap::quoted(columns_[column].name);
 }
 
 // Whether lines part the points: not where most of them hold no whole points and some hold less than one.
@@ -60,89 +56,108 @@ bool WordPoints::are_lines(ByteReader& file) const {
   return num_short == 0 || 2 * num_whole >= num_lines;
 }
 
-// Takes a word as a number of the point; what is wrong, where the point cannot do without it.
-std::string WordPoints::try_word(const ByteReader& file, std::size_t column, std::string_view word) {
-  const std::optional<PointField>& field = columns_[column].field;
-  if (!field) return "";
+// Takes a word as a number of the point; false where the point cannot do without it.
+bool WordPoints::try_word(std::size_t column, std::string_view word) {
+  const PointField& field = *columns_[column].field;
   const std::optional<double> number = parse_number(word);
   if (number) {
-    collector_.set(column, number_from_text(*field, *number));
-    return "";
+    collector_.set(column, number_from_text(field, *number));
+    return true;
   }
-  const std::string reason =
-      noun_ + " " + vdbmap::quoted(columns_[column].name) + " is " + quoted(word) + ", expected a number";
-  if (is_coordinate(field->role)) return reason;
   collector_.set(column, std::numeric_limits<double>::quiet_NaN());
-  missing_.add(column, file.line(), word, reason);
-  return "";
+  lacking_.emplace_back(column, word);
+  bad_word_ = word;
+  return !is_coordinate(field.role);
 }
 
-std::string WordPoints::skip_list(std::string_view& rest, std::size_t column) const {
-  const std::string_view word = next_word(rest);
-  if (word.empty()) return missing_word(column);
-  const std::optional<double> length = parse_number(word);
-  if (!length)
-    return noun_ + " " + vdbmap::quoted(columns_[column].name) + " is " + quoted(word) + ", expected a number";
-  for (double i = 0; i < *length; ++i) {
-    if (next_word(rest).empty()) return missing_word(column);
+bool WordPoints::skip_words(std::string_view& rest, std::uint64_t count) {
+  bad_word_ = {};
+  for (std::uint64_t i = 0; i < count; ++i) {
+    if (next_word(rest).empty()) return false;
   }
-  return "";
+  return true;
 }
 
-std::string WordPoints::try_words(const ByteReader& file, std::size_t column, std::string_view& rest) {
-  for (std::uint64_t i = 0; i < columns_[column].num_words; ++i) {
-    const std::string_view word = next_word(rest);
-    if (word.empty()) return missing_word(column);
-    const std::string reason = try_word(file, column, word);
-    if (!reason.empty()) return reason;
+bool WordPoints::skip_list(std::string_view& rest) {
+  bad_word_ = next_word(rest);
+  const std::optional<double> length = parse_number(bad_word_);
+  if (!length) return false;
+  const double most = static_cast<double>(rest.size());  // no list is longer than its line
+  return skip_words(rest, *length > 0 ? static_cast<std::uint64_t>(std::min(*length, most + 1)) : 0);
+}
+
+bool WordPoints::try_column(std::size_t column, std::string_view& rest) {
+  if (columns_[column].is_list) return skip_list(rest);
+  const std::optional<PointField>& field = columns_[column].field;
+  if (!field) return skip_words(rest, columns_[column].num_words);
+  rest.remove_prefix(std::min(rest.find_first_not_of(" \t\r\v\f"), rest.size()));
+  if (const auto number = cut_plain_number(rest, is_blank)) {
+    collector_.set(column, number_from_text(*field, *number));
+    return true;
   }
-  return "";
+  bad_word_ = next_word(rest);
+  return !bad_word_.empty() && try_word(column, bad_word_);
 }
 
-// Cuts a point off the front of `rest`; what is wrong with it, or nothing.
-std::string WordPoints::try_point(const ByteReader& file, std::string_view& rest) {
+// Cuts a point off the front of `rest`; false where it is broken.
+bool WordPoints::try_point(std::string_view& rest) {
+  lacking_.clear();
   for (std::size_t i = 0; i < columns_.size(); ++i) {
-    std::string reason = columns_[i].is_list ? skip_list(rest, i) : try_words(file, i, rest);
-    if (!reason.empty()) return reason;
+    bad_column_ = i;
+    if (!try_column(i, rest)) return false;
   }
-  return "";
+  return true;
+}
+
+void WordPoints::finish_point(const ByteReader& file) {
+  for (const auto& [column, word] : lacking_) {
+    missing_.add(column, file.line(), word, quoted(word) + " is not a number");
+  }
+  collector_.finish_point();
+}
+
+void WordPoints::note_broken(const ByteReader& file) {
+  const std::string name = noun_ + " " + vdbmap::quoted(columns_[bad_column_].name);
+  broken_.add(
+      num_points(), file.line(),
+      bad_word_.empty() ? "the line ends before " + name : name + " is " + quoted(bad_word_) + ", expected a number");
 }
 
 void WordPoints::read_line(const ByteReader& file, std::string_view line, std::uint64_t most) {
   std::string_view rest = line;
-  std::string reason = try_point(file, rest);
-  if (reason.empty() && !is_blank(rest) && !has_lists_ && count_words(line) % words_per_point_ != 0) {
-    reason = "found " + quoted(next_word(rest)) + " after the last " + noun_;
+  bool is_whole = try_point(rest);
+  if (is_whole && !is_blank_line(rest) && !has_lists_ && count_words(line) % words_per_point_ != 0) {
+    return broken_.add(num_points(), file.line(), "found " + quoted(next_word(rest)) + " after the last " + noun_);
   }
-  while (reason.empty()) {
-    collector_.finish_point();
-    if (is_blank(rest) || num_points() == most) return;
-    reason = try_point(file, rest);
+  while (is_whole) {
+    finish_point(file);
+    if (is_blank_line(rest) || num_points() == most) return;
+    is_whole = try_point(rest);
   }
-  broken_.add(num_points(), file.line(), reason);
+  note_broken(file);
 }
 
 // A word in the wrong place leaves the count of words right: the point is broken, those behind it are not.
 void WordPoints::read_flow(ByteReader& file, std::uint64_t count) {
   std::string_view rest;
   while (num_points() < count) {
-    std::string reason;
+    bool is_whole = true;
+    lacking_.clear();
     for (std::uint64_t i = 0, column = 0, word = 0; i < words_per_point_; ++i) {
-      while (is_blank(rest)) {
+      while (is_blank_line(rest)) {
         if (file.remaining() == 0) return;
         rest = file.read_line();
       }
-      const std::string wrong = try_word(file, column, next_word(rest));
-      if (reason.empty()) reason = wrong;
+      const std::string_view text = next_word(rest);
+      if (is_whole && columns_[column].field) {
+        bad_column_ = column;
+        is_whole = try_word(column, text);
+      }
       const bool is_last = ++word == columns_[column].num_words;
       column += is_last ? 1 : 0;
       word = is_last ? 0 : word;
     }
-    if (reason.empty()) {
-      collector_.finish_point();
-    } else {
-      broken_.add(num_points(), file.line(), reason);
-    }
+    is_whole ? finish_point(file) : note_broken(file);
   }
 }
 
@@ -150,7 +165,7 @@ void WordPoints::read(ByteReader& file, std::uint64_t count) {
   if (!are_lines(file)) return read_flow(file, count);
   while (num_points() < count && file.remaining() > 0) {
     const std::string_view line = file.read_line();
-    if (!is_blank(line)) read_line(file, line, count);
+    if (!is_blank_line(line)) read_line(file, line, count);
   }
 }
 

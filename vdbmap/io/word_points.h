@@ -5,6 +5,7 @@
 #include <optional>
 #include <string>
 #include <string_view>
+#include <utility>
 #include <vector>
 
 #include "vdbmap/io/broken_points.h"
@@ -44,17 +45,23 @@ class WordPoints {
   bool are_lines(ByteReader& file) const;
   void read_line(const ByteReader& file, std::string_view line, std::uint64_t most);
   void read_flow(ByteReader& file, std::uint64_t count);
-  std::string try_point(const ByteReader& file, std::string_view& rest);
-  std::string try_word(const ByteReader& file, std::size_t column, std::string_view word);
-  std::string try_words(const ByteReader& file, std::size_t column, std::string_view& rest);
-  std::string skip_list(std::string_view& rest, std::size_t column) const;
-  std::string missing_word(std::size_t column) const;
+  bool try_point(std::string_view& rest);
+  bool try_column(std::size_t column, std::string_view& rest);
+  bool skip_list(std::string_view& rest);
+  bool skip_words(std::string_view& rest, std::uint64_t count);
+  bool try_word(std::size_t column, std::string_view word);
+  void finish_point(const ByteReader& file);
+  void note_broken(const ByteReader& file);
 
   std::vector<WordColumn> columns_;
   std::string noun_;
   bool has_lists_ = false;
   std::uint64_t words_per_point_ = 0;  // without lists
   PointCollector collector_;
+  // Of the point tried last: what is wrong with it, and what it lacks.
+  std::size_t bad_column_ = 0;
+  std::string_view bad_word_;  // empty: the line ended
+  std::vector<std::pair<std::size_t, std::string_view>> lacking_;
   MissingValues missing_;
   BrokenPoints broken_;
 };

@@ -26,14 +26,18 @@ bool XyzRows::try_row(std::string_view row) {
   constexpr double kNone = std::numeric_limits<double>::quiet_NaN();
   lacks_value_ = false;
   std::string_view rest = row;
-  for (std::size_t i = 0; i < layout_.columns.size(); ++i) {
-    const std::optional<std::string_view> cell = next_cell(rest, format_);
-    if (!cell && (i + 1 < layout_.columns.size() || !ends_with_separator(row, format_))) return false;
+  const std::size_t width = layout_.columns.size();
+  for (std::size_t i = 0; i < width; ++i) {
     const std::optional<PointField>& field = layout_.columns[i];
-    if (!field) continue;
-    const std::optional<double> number = cell_number(cell.value_or(std::string_view()), format_);
-    if (!number && is_coordinate(field->role)) return false;
-    const bool is_value = number && !reason_against(*field, *number);
+    std::optional<double> number = field ? next_plain_number(rest, format_) : std::nullopt;
+    if (!number) {
+      const std::optional<std::string_view> cell = next_cell(rest, format_);
+      if (!cell && (i + 1 < width || !ends_with_separator(row, format_))) return false;
+      if (!field) continue;
+      number = cell_number(cell.value_or(std::string_view()), format_);
+      if (!number && is_coordinate(field->role)) return false;
+    }
+    const bool is_value = number && is_possible(*field, *number);
     lacks_value_ = lacks_value_ || !is_value;
     collector_.set(i, is_value ? *number : kNone);
   }
@@ -47,11 +51,12 @@ void XyzRows::note_missing_values(std::uint64_t line, std::string_view row) {
   std::string_view rest = row;
   for (std::size_t i = 0; i < layout_.columns.size(); ++i) {
     const std::string_view cell = next_cell(rest, format_).value_or(std::string_view());
-    if (!layout_.columns[i]) continue;
+    const std::optional<PointField>& field = layout_.columns[i];
+    if (!field) continue;
     const std::optional<double> number = cell_number(cell, format_);
-    const std::optional<std::string> reason =
-        number ? reason_against(*layout_.columns[i], *number) : std::optional<std::string>("a number");
-    if (reason) missing_.add(i, line, cell, cell.empty() ? "is empty" : quoted(cell) + " is not " + *reason);
+    if (number && is_possible(*field, *number)) continue;
+    const std::string expected = number ? text_of_possible(*field) : "a number";
+    missing_.add(i, line, cell, cell.empty() ? "is empty" : quoted(cell) + " is not " + expected);
   }
 }
 
