@@ -74,7 +74,15 @@ void SequenceLocalizer::add(PointCloud scan, const std::optional<Eigen::Isometry
   take(std::move(scan), step);
 }
 
-void SequenceLocalizer::skip(const std::string& reason) { added_.push_back({reason, ""}); }
+void SequenceLocalizer::skip(const std::string& reason) {
+  added_.push_back({reason, ""});
+  pass_over(1);
+}
+
+void SequenceLocalizer::pass_over(std::size_t num_scans) {
+  odometry_.pass_over(num_scans);
+  clock_.pass_over(num_scans);
+}
 
 SequenceResult SequenceLocalizer::finish() {
   stream_.finish();
@@ -101,6 +109,7 @@ SequenceResult SequenceLocalizer::finish() {
   added_.clear();
   begin_segment();
   odometry_ = Odometry(odometry_options_);
+  clock_ = ScanClock();
   return result;
 }
 

@@ -37,6 +37,9 @@ class SequenceLocalizer {
   /// A scan that cannot even be read, and why.
   void skip(const std::string& reason);
 
+  /// So many scans of the sequence are left out before the next, without a place in the result.
+  void pass_over(std::size_t num_scans);
+
   /// The result for all scans, in their order.
   SequenceResult finish();
 

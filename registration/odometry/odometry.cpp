@@ -23,9 +23,11 @@ constexpr double kMinInlierShare = 0.4;
 constexpr double kMinKeptShare = 0.7;     // of the share that the scan before had
 constexpr double kMinRefoundShare = 0.8;  // the same after a wide search, which finds the best of many wrong places too
 
-double inlier_share(const PointToPointResult& result, std::size_t num_points) {
-  return static_cast<double>(result.matches.num_inliers) / static_cast<double>(num_points);
-}
+// Left of the share that is expected after each scan that had less, as the surroundings may have changed for good, from
+// fair weather to rain: a drop from 0.97 to 0.6 is believed after five scans. It ends where scans that belong have been
+// seen to begin: below, what rests at a wrong place would be let in by waiting.
+constexpr double kExpectationDecay = 0.97;
+constexpr double kLeastDecayedShare = 0.55;
 
 std::string reason_for_few(const PointCloud& scan, std::size_t num_points, const OdometryOptions& options) {
   if (scan.empty()) return "it holds no points";
@@ -82,6 +84,10 @@ std::vector<Eigen::Vector3d> Odometry::Sample::deskewed(const Vector6d& twist, d
   return times.empty() || twist.isZero(0) ? positions : deskew_points(positions, times, {reference_time, twist});
 }
 
+double Odometry::Alignment::inlier_share() const {
+  return static_cast<double>(result.matches.num_inliers) / static_cast<double>(aligned_points.size());
+}
+
 Odometry::Odometry(const OdometryOptions& options)
     : options_(checked(options)),
       threshold_(options.initial_threshold, options.min_deviation, options.range.max),
@@ -111,13 +117,13 @@ PointToPointOptions Odometry::alignment_options(double sigma) const {
   return options;
 }
 
-Odometry::Alignment Odometry::align(const Sample& sample, const Vector6d& twist, const Eigen::Isometry3d& guess,
-                                    double sigma) const {
+Odometry::Alignment Odometry::align(const Sample& sample, const Vector6d& twist, const LocalMap& map,
+                                    const Eigen::Isometry3d& guess) const {
   constexpr RangeLimits kAll{0, std::numeric_limits<double>::infinity()};
   Alignment alignment;
   alignment.points = sample.deskewed(twist, sample.first_time + sample.lead);
   alignment.aligned_points = sample_points(alignment.points, options_.registration_spacing * options_.voxel_size, kAll);
-  alignment.result = align_points(alignment.aligned_points, map_, guess, alignment_options(sigma));
+  alignment.result = align_points(alignment.aligned_points, map, guess, alignment_options(threshold_.sigma()));
   return alignment;
 }
 
@@ -125,7 +131,6 @@ OdometryStep Odometry::register_scan(const PointCloud& scan) {
   const ScanTiming timing = clock_.next(scan);
   const Sample sample = sample_of(scan, timing);
   motion_.begin_scan(timing.interval, sample.lead);
-  last_lead_ = sample.lead;
   OdometryStep step;
   step.has_time = timing.first.has_value();
   if (options_.deskews) step.time_problem = timing.problem;
@@ -135,14 +140,14 @@ OdometryStep Odometry::register_scan(const PointCloud& scan) {
   step.sigma = threshold_.sigma();
   step.first_from_scan = motion_.at_first_point(motion_.predicted_pose());
 
-  Alignment alignment = align(sample, motion_.twist(), motion_.predicted_pose(), step.sigma);
+  Alignment alignment = align(sample, motion_.twist(), map_, motion_.predicted_pose());
   step.num_points = alignment.aligned_points.size();
   if (step.num_points < kMinPoints) {
     step.reason = reason_for_few(scan, step.num_points, options_);
   } else if (map_.empty()) {
     start(sample);
   } else {
-    straighten_first_scan(sample, alignment);
+    if (first_sample_) straighten_first_scan(sample, alignment, step);
     search_if_lost(timing.usual_interval, alignment, step);
     accept(alignment, step);
   }
@@ -152,33 +157,44 @@ OdometryStep Odometry::register_scan(const PointCloud& scan) {
 void Odometry::start(const Sample& sample) {
   map_.insert(sample.positions);
   motion_.set_pose(Eigen::Isometry3d::Identity());
+  last_lead_ = sample.lead;
   if (!sample.times.empty()) first_sample_ = sample;
 }
 
 // The first scan was taken as if the sensor had stood still. Now that its motion is known the map begins anew, in the
 // frame of that scan's first point.
-void Odometry::straighten_first_scan(const Sample& second, Alignment& alignment) {
+Odometry::Straightened Odometry::straightened_by(const Sample& second, const Alignment& alignment) const {
   constexpr int kRounds = 3;  // each takes away most of the error of the one before
-  if (!first_sample_) return;
+  Straightened straight{LocalMap(map_options(options_)), motion_, alignment};
   for (int round = 0; round < kRounds; ++round) {
-    const Vector6d twist = motion_.twist_to(alignment.result.map_from_scan);
-    motion_.correct_registered(motion_of_twist(first_sample_->lead * twist));
-    map_ = LocalMap(map_options(options_));
-    map_.insert(first_sample_->deskewed(twist, first_sample_->first_time));
-    alignment = align(second, twist, alignment.result.map_from_scan, threshold_.sigma());
+    const Eigen::Isometry3d map_from_second = straight.alignment.result.map_from_scan;
+    const Vector6d twist = straight.motion.twist_to(map_from_second);
+    straight.motion.correct_registered(motion_of_twist(first_sample_->lead * twist));
+    straight.map = LocalMap(map_options(options_));
+    straight.map.insert(first_sample_->deskewed(twist, first_sample_->first_time));
+    straight.alignment = align(second, twist, straight.map, map_from_second);
   }
-  first_sample_.reset();
+  return straight;
+}
+
+// A scan that does not lie in the straightened map tells no motion: the first one waits for another.
+void Odometry::straighten_first_scan(const Sample& second, Alignment& alignment, const OdometryStep& step) {
+  Straightened straight = straightened_by(second, alignment);
+  if (straight.alignment.inlier_share() < min_inlier_share(step)) return;
+  map_ = std::move(straight.map);
+  motion_ = straight.motion;
+  alignment = std::move(straight.alignment);
 }
 
 double Odometry::min_inlier_share(const OdometryStep& step) const {
   const double kept = step.was_refound ? kMinRefoundShare : kMinKeptShare;
-  return std::max(kMinInlierShare, kept * last_inlier_share_);
+  return std::max(kMinInlierShare, kept * expected_share_);
 }
 
 // Around where the motion leads to, then, in case a time stamp made that senseless, to where it leads usually.
 void Odometry::search_if_lost(double usual_interval, Alignment& alignment, OdometryStep& step) const {
   for (const Eigen::Isometry3d& guess : {motion_.predicted_pose(), motion_.predicted_pose(usual_interval)}) {
-    if (inlier_share(alignment.result, step.num_points) >= min_inlier_share(step)) return;
+    if (alignment.inlier_share() >= min_inlier_share(step)) return;
     const PointToPointResult rough =
         search_widely(alignment.aligned_points, map_, guess, alignment_options(options_.initial_threshold / 2));
     const PointToPointResult found =
@@ -192,10 +208,12 @@ void Odometry::search_if_lost(double usual_interval, Alignment& alignment, Odome
 void Odometry::accept(const Alignment& alignment, OdometryStep& step) {
   const Eigen::Isometry3d& map_from_scan = alignment.result.map_from_scan;
   step.num_iterations = alignment.result.num_iterations;
-  step.inlier_share = inlier_share(alignment.result, step.num_points);
+  step.inlier_share = alignment.inlier_share();
   if (step.inlier_share < min_inlier_share(step)) {
     step.reason = "only " + percent(step.inlier_share) + " of its points lie on those of the scans before, expected " +
                   percent(min_inlier_share(step));
+    const double least = std::min(expected_share_, kLeastDecayedShare / kMinKeptShare);
+    expected_share_ = std::max(kExpectationDecay * expected_share_, least);
     return;
   }
   const Eigen::Isometry3d predicted_from_found = motion_.predicted_pose().inverse() * map_from_scan;
@@ -221,7 +239,9 @@ void Odometry::add_to_map(const Alignment& alignment, OdometryStep& step) {
   map_.insert(moved(alignment.points, map_from_scan));
   map_.forget_far(map_from_scan.translation());
   first_from_registered_ = step.first_from_scan;
-  last_inlier_share_ = step.inlier_share;
+  first_sample_.reset();
+  last_lead_ = step.motion.lead;
+  expected_share_ = step.inlier_share;
 }
 
 }  // namespace vdbmap::registration

@@ -72,6 +72,9 @@ class Odometry {
   /// step says why.
   OdometryStep register_scan(const PointCloud& scan);
 
+  /// So many scans of the sequence are left out before the next.
+  void pass_over(std::size_t num_scans) { clock_.pass_over(num_scans); }
+
   /// The points around the sensor, frame of the first registered scan.
   const LocalMap& map() const { return map_; }
 
@@ -91,13 +94,24 @@ class Odometry {
     PointToPointResult result;
     std::vector<Eigen::Vector3d> points;
     std::vector<Eigen::Vector3d> aligned_points;
+
+    double inlier_share() const;
+  };
+
+  // The map that begins anew with its first scan deskewed, and the scan in it that told the motion.
+  struct Straightened {
+    LocalMap map;
+    SensorMotion motion;
+    Alignment alignment;
   };
 
   Sample sample_of(const PointCloud& scan, const ScanTiming& timing) const;
   PointToPointOptions alignment_options(double sigma) const;
-  Alignment align(const Sample& sample, const Vector6d& twist, const Eigen::Isometry3d& guess, double sigma) const;
+  Alignment align(const Sample& sample, const Vector6d& twist, const LocalMap& map,
+                  const Eigen::Isometry3d& guess) const;
   void start(const Sample& sample);
-  void straighten_first_scan(const Sample& second, Alignment& alignment);
+  Straightened straightened_by(const Sample& second, const Alignment& alignment) const;
+  void straighten_first_scan(const Sample& second, Alignment& alignment, const OdometryStep& step);
   double min_inlier_share(const OdometryStep& step) const;
   void search_if_lost(double usual_interval, Alignment& alignment, OdometryStep& step) const;
   void accept(const Alignment& alignment, OdometryStep& step);
@@ -107,11 +121,11 @@ class Odometry {
   ScanClock clock_;
   AdaptiveThreshold threshold_;
   LocalMap map_;
-  std::optional<Sample> first_sample_;  // until its motion is known
+  std::optional<Sample> first_sample_;  // until another scan is registered, which tells its motion
   SensorMotion motion_;
   Eigen::Isometry3d first_from_registered_ = Eigen::Isometry3d::Identity();  // of the last registered scan
   double last_lead_ = 0;                                                     // [s] of a scan with usable times
-  double last_inlier_share_ = 0;                                             // of the last registered scan
+  double expected_share_ = 0;  // of inliers: that of the last registered scan, less for each one rejected since
 };
 
 }  // namespace vdbmap::registration

@@ -5,6 +5,7 @@
 #include <array>
 #include <cmath>
 #include <cstdio>
+#include <utility>
 
 namespace vdbmap::registration {
 namespace {
@@ -48,6 +49,7 @@ std::string problem_of(const PointCloud& scan, TimeSpan& span) {
 
 ScanTiming ScanClock::next(const PointCloud& scan) {
   ScanTiming timing = judge(scan);
+  num_turns_ = 1;
   elapsed_ = elapsed_ ? *elapsed_ + timing.interval : 0;
   timing.elapsed = *elapsed_;
   return timing;
@@ -55,23 +57,25 @@ ScanTiming ScanClock::next(const PointCloud& scan) {
 
 ScanTiming ScanClock::judge(const PointCloud& scan) {
   ScanTiming timing;
-  timing.interval = last_interval_;
-  timing.usual_interval = last_interval_;
-  if (scan.times.empty()) return timing;
-
+  timing.interval = timing.usual_interval = num_turns_ * usual_turn_;
   TimeSpan span;
-  timing.problem = problem_of(scan, span);
-  if (!timing.problem.empty()) return timing;
-
+  if (!scan.times.empty()) timing.problem = problem_of(scan, span);
+  if (scan.times.empty() || !timing.problem.empty()) {
+    since_last_first_ += timing.interval;
+    return timing;
+  }
   const double step = last_first_ ? span.first - *last_first_ : 0;
+  const double rest = step - std::exchange(since_last_first_, 0);
   last_first_ = span.first;
   if (step < -kSameStart * span.duration()) {
     timing.problem = "its time stamps go back by " + in_seconds(-step);
     return timing;
   }
   timing.first = span.first;
-  timing.interval = step > kSameStart * span.duration() ? step : span.duration();
-  if (timing.interval <= kMaxUsualInterval * span.duration()) last_interval_ = timing.interval;
+  // By a common epoch what the time stamps say, else as many turns as there were.
+  timing.interval = rest > kSameStart * span.duration() ? rest : num_turns_ * span.duration();
+  const double turn = timing.interval / num_turns_;
+  if (turn <= kMaxUsualInterval * span.duration()) usual_turn_ = turn;
   return timing;
 }
 

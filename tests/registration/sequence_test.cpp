@@ -120,6 +120,67 @@ TEST(Sequence, GivenOdometryTellsTheFirstPointsToo) {
   EXPECT_LT(jolted_error(localizer.finish()), 0.01);
 }
 
+Eigen::Isometry3d even_sensor_at(double seconds) {
+  return Eigen::Isometry3d(Eigen::Translation3d(-14 + 5 * seconds, 0.5, 1.8));
+}
+
+// Of the first points at 5 m/s: 0.25 m off where the clock counts a turn too few or too many.
+void expect_even_motion(const SequenceResult& result, const std::vector<int>& turns) {
+  for (std::size_t i = 0; i < turns.size(); ++i) {
+    if (turns[i] < 0) continue;
+    EXPECT_TRUE(result.scans[i].found()) << i << ": " << result.scans[i].reason;
+    EXPECT_LT((result.scans[i].map_from_scan.translation() - even_sensor_at(0.1 * turns[i]).translation()).norm(), 0.03)
+        << i;
+  }
+}
+
+// A turn whose time stamps begin anew.
+PointCloud even_scan(int turn) {
+  test::Scanner scanner;
+  scanner.num_azimuths = 600;
+  scanner.range_noise = 0.01;
+  scanner.seed = static_cast<unsigned>(turn) + 1;
+  PointCloud scan = test::scan_while_moving(test::village(), even_sensor_at, 0.1 * turn, 0.1, scanner);
+  for (double& time : scan.times) time -= 0.1 * turn;
+  return scan;
+}
+
+TEST(Sequence, TimesThatBeginAnewDeskewRightWhereScansAreLeftOut) {
+  const std::vector<PointCloud> scans = jolted_scans(false);
+  for (const bool has_poses : {true, false}) {
+    SequenceLocalizer localizer(street_map());
+    for (int turn = 0; turn < kJoltedScans; ++turn) {
+      const PointCloud& scan = scans[static_cast<std::size_t>(turn)];
+      if (turn == 4) {
+        localizer.skip("cannot be read");
+      } else if (turn == 7) {
+        localizer.pass_over(1);
+      } else if (has_poses) {
+        localizer.add(scan, jolted_sensor_at(0).inverse() * jolted_sensor_at(0.1 * turn));
+      } else {
+        localizer.add(scan);
+      }
+    }
+    const SequenceResult result = localizer.finish();
+    const std::vector<int> turns = {0, 1, 2, 3, -1, 5, 6, 8, 9};
+    for (std::size_t i = 0; i < turns.size(); ++i) {
+      if (turns[i] < 0) continue;
+      EXPECT_TRUE(result.scans[i].found()) << i << ": " << result.scans[i].reason;
+      const Eigen::Isometry3d truth = jolted_sensor_at(0.1 * turns[i]);
+      // A jolt of 5 cm that a gap hides; 0.4 m off where the clock counts a turn too few.
+      EXPECT_LT((result.scans[i].map_from_scan.translation() - truth.translation()).norm(), 0.08) << i;
+    }
+  }
+}
+
+TEST(Sequence, TimesThatBeginAnewDeskewRightWhereAPoseIsMissing) {
+  SequenceLocalizer localizer(street_map());
+  for (const int turn : {0, 1, 2, 3, 4}) {
+    localizer.add(even_scan(turn), turn == 2 ? std::nullopt : std::optional(even_sensor_at(0.1 * turn)));
+  }
+  expect_even_motion(localizer.finish(), {0, 1, -1, 3, 4});
+}
+
 TEST(Sequence, IsFoundInAMapAtUtmCoordinates) {
   const Eigen::Vector3d utm(552'320, 5'802'560, 64);
   BuildOptions options;

@@ -253,6 +253,102 @@ TEST(Odometry, AScanOfAnotherPlaceIsRefused) {
   EXPECT_EQ(odometry.map().num_points(), num_points);
 }
 
+// Points anywhere, at the times of a turn.
+PointCloud moving_garbage(int number, double reach) {
+  PointCloud cloud;
+  cloud.positions = test::random_points(4000, {Eigen::Vector3d::Constant(-reach), Eigen::Vector3d::Constant(reach)}, 7);
+  for (std::size_t i = 0; i < cloud.size(); ++i) {
+    cloud.times.push_back(kPeriod * (number + static_cast<double>(i) / static_cast<double>(cloud.size())));
+  }
+  return cloud;
+}
+
+TEST(Odometry, ABadSecondScanLeavesTheMapAndALaterOneStraightensTheFirst) {
+  for (const PointCloud& bad : {moving_garbage(1, 40), moving_garbage(1, 80)}) {
+    Odometry odometry;
+    odometry.register_scan(moving_scan(0));
+    const std::vector<Eigen::Vector3d> map = odometry.map().points();
+    EXPECT_FALSE(odometry.register_scan(bad).registered());
+    EXPECT_EQ(odometry.map().points(), map);
+    for (int i = 2; i < 6; ++i) {
+      const OdometryStep step = odometry.register_scan(moving_scan(i));
+      ASSERT_TRUE(step.registered()) << i << ": " << step.reason;
+      // In the frame of the first scan's first point: 0.4 m off where it is not straightened.
+      EXPECT_LT(error_of(step, i).translation, kTolerance) << i;
+      EXPECT_FALSE(step.was_refound) << i;
+    }
+  }
+}
+
+PointCloud with_times_that_begin_anew(PointCloud scan) {
+  const double first = scan.times.front();
+  for (double& time : scan.times) time -= first;
+  return scan;
+}
+
+TEST(Odometry, TimesThatBeginAnewDeskewByTheTrueSpeedWhereScansAreLeftOut) {
+  Odometry odometry;
+  for (int i = 0; i < 16; i += 2) {
+    const OdometryStep step = odometry.register_scan(with_times_that_begin_anew(moving_scan(i)));
+    odometry.pass_over(1);
+    ASSERT_TRUE(step.registered()) << i << ": " << step.reason;
+    EXPECT_LT(error_of(step, i).translation, kTolerance) << i;
+    if (i > 0) {
+      EXPECT_NEAR(step.motion.twist.tail<3>().norm(), 8, 0.8) << i;  // 16 m/s by the clock of all scans
+    }
+  }
+}
+
+TEST(Odometry, TimesThatBeginAnewDeskewByTheTrueSpeedAfterAScanThatCannotBeRead) {
+  Odometry odometry;
+  for (int i = 0; i < 8; ++i) {
+    if (i == 4) {
+      odometry.pass_over(1);
+      continue;
+    }
+    const OdometryStep step = odometry.register_scan(with_times_that_begin_anew(moving_scan(i)));
+    ASSERT_TRUE(step.registered()) << i << ": " << step.reason;
+    EXPECT_LT(error_of(step, i).translation, kTolerance) << i;
+    if (i > 0) {
+      EXPECT_NEAR(step.motion.twist.tail<3>().norm(), 8, 0.8) << i;
+    }
+  }
+}
+
+// As in rain: a share of the points is measured in the air before the surface.
+PointCloud in_rain(PointCloud scan, double share) {
+  std::mt19937 random(3);
+  std::uniform_real_distribution<double> any(0, 1);
+  for (Eigen::Vector3d& point : scan.positions) {
+    if (any(random) < share) point *= 0.1 + 0.8 * any(random);
+  }
+  return scan;
+}
+
+TEST(Odometry, AShareThatDropsForGoodIsAcceptedAfterSomeScans) {
+  Odometry odometry;
+  double clear_share = 0;
+  int num_lost = 0;
+  for (int i = 0; i < 18; ++i) {
+    const OdometryStep step = odometry.register_scan(i < 5 ? still_scan(i) : in_rain(still_scan(i), 0.37));
+    if (i == 4) clear_share = step.inlier_share;
+    if (i == 5) {
+      ASSERT_FALSE(step.registered()) << step.inlier_share << " after " << clear_share;
+    }
+    if (i >= 5 && !step.registered()) ++num_lost;
+    if (i < 14) continue;
+    EXPECT_TRUE(step.registered()) << i << ": " << step.reason;
+    EXPECT_LT(error_of(step, i).translation, 2 * kTolerance) << i;  // a third of the points is in the air
+  }
+  EXPECT_LT(num_lost, 10);
+}
+
+TEST(Odometry, ScansOfNothingThatIsThereAreRefusedHoweverManyTheyAre) {
+  Odometry odometry;
+  for (int i = 0; i < 5; ++i) odometry.register_scan(still_scan(i));
+  for (int i = 5; i < 15; ++i) EXPECT_FALSE(odometry.register_scan(moving_garbage(i, 40)).registered()) << i;
+}
+
 TEST(Odometry, TimesOfNoUseAreToldAndTheScanIsTakenAsItIs) {
   Odometry odometry;
   for (int i = 0; i < 8; ++i) {

@@ -41,6 +41,45 @@ TEST(ScanClock, TimesThatBeginAnewWithEachScanFollowOneAnother) {
   EXPECT_NEAR(next.interval, 0.05, 1e-12);
 }
 
+TEST(ScanClock, TimesThatBeginAnewGoOnByTheScansThatAreLeftOut) {
+  ScanClock clock;
+  clock.next(scan(0));
+  clock.pass_over(2);
+  const ScanTiming third = clock.next(scan(0.001));
+  EXPECT_NEAR(third.interval, 0.3, 1e-12);
+  EXPECT_NEAR(third.elapsed, 0.3, 1e-12);
+  EXPECT_NEAR(clock.next(scan(0)).interval, 0.1, 1e-12);
+}
+
+TEST(ScanClock, TimesOfACommonEpochTellOfTheScansThatAreLeftOutThemselves) {
+  ScanClock clock;
+  clock.next(scan(100));
+  clock.pass_over(2);
+  EXPECT_NEAR(clock.next(scan(100.3)).interval, 0.3, 1e-12);
+  EXPECT_NEAR(clock.next(scan(100.4)).usual_interval, 0.1, 1e-12);
+}
+
+TEST(ScanClock, WithoutTimesEveryScanThatIsLeftOutTakesTheUsualTurn) {
+  ScanClock clock;
+  PointCloud without = scan(0);
+  without.times.clear();
+  clock.next(scan(5));
+  clock.next(scan(5.25));
+  clock.pass_over(1);
+  EXPECT_NEAR(clock.next(without).interval, 0.5, 1e-12);
+  EXPECT_NEAR(clock.next(without).interval, 0.25, 1e-12);
+}
+
+TEST(ScanClock, TheTurnOfAScanWithoutUsableTimesIsNotCountedTwice) {
+  ScanClock clock;
+  PointCloud useless = scan(100.1, 0);
+  clock.next(scan(100));
+  clock.next(useless);
+  const ScanTiming after = clock.next(scan(100.2));
+  EXPECT_NEAR(after.interval, 0.1, 1e-12);
+  EXPECT_NEAR(after.elapsed, 0.2, 1e-12);
+}
+
 TEST(ScanClock, WithoutTimesTheLastIntervalGoesOn) {
   ScanClock clock;
   PointCloud without = scan(0);
