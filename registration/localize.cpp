@@ -2,6 +2,7 @@
 #include "registration/localize.h"
 
 #include <stdexcept>
+#include <utility>
 
 #include "registration/percent.h"
 
@@ -18,6 +19,11 @@ std::string reason_not_found(const FineResult& fine, const FoundCriteria& criter
   return "";
 }
 
+LocalizedScan judged(FineResult fine, const FoundCriteria& criteria) {
+  std::string reason = reason_not_found(fine, criteria);
+  return {std::move(fine), std::move(reason)};
+}
+
 }  // namespace
 
 void FoundCriteria::check() const {
@@ -28,16 +34,14 @@ void FoundCriteria::check() const {
 LocalizedScan localize_scan(const PointCloud& scan, const VoxelMap& map, const Eigen::Isometry3d& map_from_scan_guess,
                             const FineOptions& options, const FoundCriteria& criteria) {
   criteria.check();
-  LocalizedScan localized{align_scan(scan, map, map_from_scan_guess, options), ""};
-  localized.reason = reason_not_found(localized.fine, criteria);
-  return localized;
+  return judged(align_scan(scan, map, map_from_scan_guess, options), criteria);
 }
 
-void ConstantVelocity::found(const Eigen::Isometry3d& map_from_scan) {
-  const Eigen::Isometry3d last_from_this =
-      last_ ? Eigen::Isometry3d(last_->inverse() * map_from_scan) : Eigen::Isometry3d::Identity();
-  next_ = map_from_scan * last_from_this;
-  last_ = map_from_scan;
+LocalizedScan localize_sample(const SampledScan& sample, const VoxelMap& map,
+                              const Eigen::Isometry3d& map_from_scan_guess, const FineOptions& options,
+                              const FoundCriteria& criteria) {
+  criteria.check();
+  return judged(align_sample(sample, map, map_from_scan_guess, options), criteria);
 }
 
 }  // namespace vdbmap::registration

@@ -1,12 +1,12 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #pragma once
 
-#include <optional>
 #include <string>
 
 #include <Eigen/Geometry>
 
 #include "registration/fine/point_to_plane.h"
+#include "registration/fine/scan_sample.h"
 #include "vdbmap/core/point_cloud.h"
 #include "vdbmap/core/voxel_map.h"
 
@@ -22,8 +22,9 @@ struct FoundCriteria {
 
 /// One scan in a map, or why it was not found there.
 struct LocalizedScan {
-  FineResult fine;     ///< the best alignment, also where it is not believed
-  std::string reason;  ///< empty when found
+  FineResult fine;                ///< the best alignment, also where it is not believed
+  std::string reason;             ///< empty when found
+  std::string time_problem = {};  ///< why it was not deskewed although it has time stamps; empty where nothing is wrong
 
   bool found() const { return reason.empty(); }
 };
@@ -32,23 +33,9 @@ struct LocalizedScan {
 LocalizedScan localize_scan(const PointCloud& scan, const VoxelMap& map, const Eigen::Isometry3d& map_from_scan_guess,
                             const FineOptions& options = {}, const FoundCriteria& criteria = {});
 
-/// Guesses the next pose of a moving sensor: the last one, moved on by the last motion.
-class ConstantVelocity {
- public:
-  explicit ConstantVelocity(const Eigen::Isometry3d& map_from_first_scan) : next_(map_from_first_scan) {}
-
-  /// The guess for the next scan.
-  const Eigen::Isometry3d& guess() const { return next_; }
-
-  /// The next scan was found here.
-  void found(const Eigen::Isometry3d& map_from_scan);
-
-  /// The next scan was not found: it is taken to lie where it was guessed.
-  void lost() { found(next_); }
-
- private:
-  std::optional<Eigen::Isometry3d> last_;
-  Eigen::Isometry3d next_;
-};
+/// The same of a scan that is thinned already.
+LocalizedScan localize_sample(const SampledScan& sample, const VoxelMap& map,
+                              const Eigen::Isometry3d& map_from_scan_guess, const FineOptions& options = {},
+                              const FoundCriteria& criteria = {});
 
 }  // namespace vdbmap::registration

@@ -5,6 +5,8 @@
 
 #include <Eigen/Geometry>
 
+#include "registration/rigid_motion.h"
+
 namespace vdbmap::registration {
 
 /// A pose of a moving sensor at a time [s].
@@ -18,5 +20,10 @@ struct TimedPose {
 /// Throws std::invalid_argument where both are, and where they are not in the order of time.
 Eigen::Isometry3d pose_at_time(double time, const std::optional<TimedPose>& before, const TimedPose& at,
                                const std::optional<TimedPose>& after);
+
+/// How the sensor moves at the pose `at` [rad/s and m/s, axes of the sensor]: the derivative of that parabola. Throws
+/// as pose_at_time().
+Vector6d twist_at_pose(const std::optional<TimedPose>& before, const TimedPose& at,
+                       const std::optional<TimedPose>& after);
 
 }  // namespace vdbmap::registration

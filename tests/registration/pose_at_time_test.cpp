@@ -47,6 +47,21 @@ TEST(PoseAtTime, FollowsATurnThatQuickens) {
   expect_near(pose_at_time(0.15, at(0.1), at(0.2), at(0.3)), at(0.15).map_from_sensor);
 }
 
+TEST(TwistAtPose, IsTheOneThatThePosesFollow) {
+  const Vector6d twist = twist_of({0.1, -0.2, 0.7}, {8, 0.3, -0.2});
+  const auto at = [&](double time) { return TimedPose{time, motion_of_twist(time * twist)}; };
+  EXPECT_TRUE(twist_at_pose(at(0.08), at(0.2), at(0.31)).isApprox(twist, 1e-9));
+  EXPECT_TRUE(twist_at_pose(at(0.08), at(0.2), std::nullopt).isApprox(twist, 1e-9));
+  EXPECT_TRUE(twist_at_pose(std::nullopt, at(0.2), at(0.31)).isApprox(twist, 1e-9));
+}
+
+TEST(TwistAtPose, IsThatOfTheMomentWhereItChanges) {
+  const auto at = [](double time) {
+    return TimedPose{time, Eigen::Isometry3d(Eigen::Translation3d(8 * time + 1.5 * time * time, 0, 0))};
+  };
+  EXPECT_TRUE(twist_at_pose(at(0.1), at(0.2), at(0.33)).isApprox(twist_of({0, 0, 0}, {8 + 3 * 0.2, 0, 0}), 1e-9));
+}
+
 TEST(PoseAtTime, NeedsANeighbourInTheOrderOfTime) {
   const TimedPose at{5, Eigen::Isometry3d::Identity()};
   EXPECT_THROW(pose_at_time(4.9, std::nullopt, at, std::nullopt), std::invalid_argument);
