@@ -113,6 +113,16 @@ TEST_F(TrajectoryFile, TumWithoutTimesNumbersThePoses) {
   EXPECT_EQ(read_trajectory(path_).times, (std::vector<double>{0, 2}));
 }
 
+TEST_F(TrajectoryFile, TumLeavesPosesWithoutATimeOutAndTheOthersKeepTheirs) {
+  Trajectory trajectory;
+  trajectory.map_from_scan = {Eigen::Isometry3d::Identity(), Eigen::Isometry3d::Identity(), std::nullopt,
+                              Eigen::Isometry3d::Identity()};
+  trajectory.times = {10, std::nan(""), std::nan(""), 10.3};
+  write_trajectory(path_, trajectory, TrajectoryFormat::kTum);
+
+  EXPECT_EQ(read_trajectory(path_).times, (std::vector<double>{10, 10.3}));
+}
+
 TEST_F(TrajectoryFile, TumHasTheScalarPartLast) {
   write("0 1 2 3 0 0 0.70710678118654752 0.70710678118654752\n");  // a quarter turn to the left
   const Eigen::Isometry3d map_from_scan = *read_trajectory(path_).map_from_scan[0];
@@ -175,7 +185,7 @@ TEST_F(TrajectoryFile, MatricesThatAreNotRotationsAreRefused) {
 }
 
 TEST_F(TrajectoryFile, QuaternionsThatAreNotRotationsAreRefused) {
-  for (const std::string line : {"0 1 2 3 0 0 0 0", "0 1 2 3 0 0 0 1.1", "0 1 2 3 1 1 1 1", "0 1 2 3 1e200 0 0 0"}) {
+  for (const std::string line : {"0 1 2 3 0 0 0 1.1", "0 1 2 3 0 0 0 0.98", "0 1 2 3 0 0 0 1e-9", "0 1 2 3 1 1 1 1", "0 1 2 3 1e200 0 0 0"}) {
     EXPECT_NE(error_for(line).find(":1: quaternion is not a rotation"), std::string::npos) << line;
   }
 }
