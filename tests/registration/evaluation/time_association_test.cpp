@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "registration/evaluation/time_association.h"
 
+#include <algorithm>
 #include <cmath>
 #include <random>
 #include <stdexcept>
@@ -75,6 +76,72 @@ TEST(TimeAssociation, PairsAreEachOthersNearest) {
     const bool is_pair = std::abs(estimates[partner] - truths[i]) <= 0.03 && nearest(estimates[partner], truths) == i;
     EXPECT_EQ(found[i], is_pair ? static_cast<int>(partner) : -1) << i;
   }
+}
+
+std::vector<double> every(double step, int count, double start = 0) {
+  std::vector<double> times;
+  for (int i = 0; i < count; ++i) times.push_back(start + step * i);
+  return times;
+}
+
+std::size_t num_missing(const TimeAssociation& association) {
+  EXPECT_EQ(association.estimate.size(), association.truth.size());
+  const auto& poses = association.estimate.map_from_scan;
+  return static_cast<std::size_t>(std::count(poses.begin(), poses.end(), std::nullopt));
+}
+
+TEST(TimeAssociation, TruthBetweenTheScansIsNotMissing) {
+  const auto association = associate_by_time(at_times(every(0.1, 50)), at_times(every(0.01, 491)));
+  EXPECT_EQ(association.truth.size(), 50U);
+  EXPECT_EQ(num_missing(association), 0U);
+  EXPECT_EQ(association.num_unmatched, 0U);
+  EXPECT_EQ(association.num_not_judged, 441U);
+  for (std::size_t i = 0; i < 50; ++i) {
+    EXPECT_EQ(association.estimate.map_from_scan[i]->translation().x(), static_cast<double>(i));
+    EXPECT_EQ(association.truth.map_from_scan[i]->translation().x(), 10.0 * static_cast<double>(i));
+  }
+}
+
+TEST(TimeAssociation, HolesOfTheEstimatesAreMissingAtTheirOwnRate) {
+  std::vector<double> estimates = every(0.1, 50);
+  estimates.erase(estimates.begin() + 30, estimates.begin() + 34);
+  estimates.erase(estimates.begin() + 10);
+  for (const double truth_step : {0.01, 0.005, 0.03, 0.05}) {
+    const auto association =
+        associate_by_time(at_times(estimates), at_times(every(truth_step, static_cast<int>(4.96 / truth_step))), 0.02);
+    EXPECT_EQ(num_missing(association), 5U) << truth_step;
+    EXPECT_EQ(association.truth.size(), 50U) << truth_step;
+  }
+}
+
+TEST(TimeAssociation, JitterOfTheScansIsNoHole) {
+  std::mt19937 random(1);
+  std::uniform_real_distribution<double> jitter(-0.015, 0.015);
+  std::vector<double> estimates = every(0.1, 50);
+  for (double& time : estimates) time += jitter(random);
+  const auto association = associate_by_time(at_times(estimates), at_times(every(0.01, 600, -0.5)));
+  EXPECT_EQ(num_missing(association), 0U);
+  EXPECT_EQ(association.num_unmatched, 0U);
+}
+
+TEST(TimeAssociation, TruthThatBeginsBeforeTheScansAndEndsAfterThemIsNotMissing) {
+  const auto association = associate_by_time(at_times(every(0.1, 20, 5)), at_times(every(0.01, 2000)));
+  EXPECT_EQ(num_missing(association), 0U);
+  EXPECT_EQ(association.truth.size(), 20U);
+}
+
+TEST(TimeAssociation, AtTheSameRateEveryTruePoseIsJudged) {
+  std::vector<double> estimates;
+  for (const int i : {0, 3, 4, 9, 14, 20, 21}) estimates.push_back(0.1 * i);
+  const auto association = associate_by_time(at_times(estimates), at_times(every(0.1, 30)));
+  EXPECT_EQ(association.truth.size(), 30U);
+  EXPECT_EQ(num_missing(association), 23U);
+  EXPECT_EQ(association.num_not_judged, 0U);
+}
+
+TEST(TimeAssociation, AHoleOfYearsTakesNoTime) {
+  const auto association = associate_by_time(at_times({0, 0.1, 0.2, 0.3, 1e9}), at_times(every(0.01, 100)));
+  EXPECT_EQ(association.truth.size(), 11U);  // of the second that the truth lasts, with its end
 }
 
 TEST(TimeAssociation, NothingIsNearNothing) {
