@@ -102,6 +102,30 @@ TEST_F(Build, ScansWithoutAPoseAreLeftOutWithAWarning) {
   EXPECT_EQ(json::parse(result.out)["points"], 10'000);
 }
 
+// A wall's point 10 m ahead of the first scan, which the drive comes nearer to by a metre a scan.
+TEST_F(Build, PosesOfKittisCameraAreMovedToTheLidarAndSaid) {
+  std::filesystem::create_directories(folder_ / "velodyne");
+  std::string poses;
+  for (int i = 0; i < 5; ++i) {
+    PointCloud cloud = points({{10.05 - i, 0.05, 1.05}});
+    cloud.intensities = {0};
+    write_kitti_bin(folder_ / "velodyne" / (std::to_string(i) + ".bin"), cloud);
+    poses += "1 0 0 0 0 1 0 0 0 0 1 " + std::to_string(i) + "\n";
+  }
+  write_raw(folder_ / "camera.txt", poses);
+  const std::vector<std::string> arguments = {"build", path("velodyne"), "--poses", path("camera.txt"),
+                                              "-o",    path("map.vdb"),  "--json"};
+  expect_error(vdbmap(arguments), ExitCode::kBadInput, "camera.txt: the poses go mostly along their z axis");
+  write_raw(folder_ / "calib.txt", "Tr: 0 -1 0 0 0 0 -1 0 1 0 0 0\n");
+  const CommandResult result = vdbmap(arguments);
+  ASSERT_EQ(result.exit_code, 0) << result.err;
+  EXPECT_NE(result.err.find("camera.txt: the poses are taken as the camera's"), std::string::npos) << result.err;
+  const json built = json::parse(result.out);
+  EXPECT_EQ(built["pose_frame"], "camera");
+  EXPECT_EQ(built["calibration"], path("calib.txt"));
+  EXPECT_EQ(built["levels"][0]["voxels"], 1);
+}
+
 TEST_F(Build, PosesBeyondTheLastScanAreNotUsed) {
   const std::string folder = scans(3);
   std::filesystem::remove(folder + "/2.bin");

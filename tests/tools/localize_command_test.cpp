@@ -118,11 +118,18 @@ TEST_F(Localize, ScansOfNoUseAreNamedAndTheOthersFound) {
   std::ofstream far(folder_ / "drive" / "2b.csv");
   far << "x,y,z\n500,0,0\n0,500,0\n";
   far.close();
-  const test::CommandResult run = vdbmap({"localize", path("village.vdb"), path("drive"), "-o", path("poses.txt")});
-  EXPECT_EQ(run.exit_code, 0) << run.err;
-  EXPECT_EQ(run.out, path("poses.txt") + ": 4 of 6 scans found\n");
-  EXPECT_NE(run.err.find("1b.bin: not found: "), std::string::npos) << run.err;
-  EXPECT_NE(run.err.find("2b.csv: not found: "), std::string::npos) << run.err;
+  Trajectory guess;
+  guess.map_from_scan = {truth_.map_from_scan.front()};
+  write_trajectory(folder_ / "guess.txt", guess, TrajectoryFormat::kKitti);
+  for (const std::vector<std::string>& mode : {std::vector<std::string>{}, {"--initial", path("guess.txt")}}) {
+    std::vector<std::string> arguments = {"localize", path("village.vdb"), path("drive"), "-o", path("poses.txt")};
+    arguments.insert(arguments.end(), mode.begin(), mode.end());
+    const test::CommandResult run = vdbmap(arguments);
+    EXPECT_EQ(run.exit_code, 0) << run.err;
+    EXPECT_EQ(run.out, path("poses.txt") + ": 4 of 6 scans found\n");
+    EXPECT_NE(run.err.find("1b.bin: not found: "), std::string::npos) << run.err;
+    EXPECT_NE(run.err.find("2b.csv: not found: "), std::string::npos) << run.err;
+  }
 }
 
 TEST_F(Localize, AMapWithoutTheCoarseLevelIsBadInput) {

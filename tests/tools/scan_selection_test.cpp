@@ -53,8 +53,7 @@ class SelectedPoses : public testing::Test {
  protected:
   Trajectory read(std::size_t num_poses, const ScanSelection& selection, std::size_t num_wanted) const {
     const std::filesystem::path path = folder_ / "poses.txt";
-    write_trajectory(path, poses_along_x(num_poses), TrajectoryFormat::kKitti);
-    return read_selected_poses(path, selection, num_wanted);
+    return selected_poses(poses_along_x(num_poses), path, selection, num_wanted);
   }
 
   test::TemporaryFolder folder_;

@@ -19,6 +19,7 @@
 #include "tools/cli/map_summary.h"
 #include "tools/cli/number_list.h"
 #include "tools/cli/output.h"
+#include "tools/cli/pose_frame.h"
 #include "tools/cli/progress.h"
 #include "tools/cli/reading.h"
 #include "tools/cli/scan_selection.h"
@@ -35,6 +36,7 @@ constexpr double kDefaultVoxelSize = 0.1;  // [m]
 struct BuildCommandOptions {
   std::vector<std::filesystem::path> inputs;
   std::optional<std::filesystem::path> poses;
+  PoseFrame pose_frame = PoseFrame::kUnknown;
   ScanSelection selection;
   std::optional<double> voxel_size;
   std::vector<double> levels;
@@ -103,6 +105,7 @@ void add_options(CLI::App& app, BuildCommandOptions& options) {
                                       "A pose for each scan (KITTI or TUM); without, the points are in map coordinates")
                            ->type_name("FILE");
   add_range_options(app, options, poses);
+  add_pose_frame(app, options.pose_frame);
   add_scan_selection(app, options.selection);
   add_map_options(app, options);
   add_label_options(app, options);
@@ -202,13 +205,15 @@ std::string text_of_counts(std::size_t num_scans, std::size_t num_files) {
   return num_scans == num_files ? files : fmt::format("{} scans of {}", num_scans, files);
 }
 
-void print(const MapFromFiles& built, const std::filesystem::path& file, const std::vector<MapInput>& inputs,
+void print(const MapFromFiles& built, const std::filesystem::path& file, const ChosenInputs& chosen,
            const ReadingReport& reading, double seconds, bool as_json) {
+  const std::vector<MapInput>& inputs = chosen.inputs;
   const std::size_t num_files = count_files(inputs);
   if (as_json) {
     nlohmann::ordered_json json = json_of_map(built.map, file);
     json["files"] = num_files;
     json["scans"] = inputs.size();
+    if (chosen.poses) add_pose_frame(json, *chosen.poses);
     json["dropped_points"] = built.num_dropped;
     json["points_out_of_range"] = built.num_out_of_range;
     json["findings"] = reading.json();
@@ -234,17 +239,19 @@ ExitCode run(const BuildCommandOptions& options, const CommonOptions& common) {
   if (options.poses) read_files.push_back(*options.poses);
   if (options.labels) read_files.push_back(*options.labels);
   check_output(options.output.file, kMapKind, read_files);
-  std::vector<MapInput> inputs = choose_inputs(list_scans(files, options.read), options.selection, options.poses);
-  if (options.labels) add_label_files(inputs, *options.labels);
-  check_output(options.output.file, kMapKind, label_files(inputs));
+  ChosenInputs chosen =
+      choose_inputs(list_scans(files, options.read), options.selection, options.poses, options.pose_frame);
+  if (options.labels) add_label_files(chosen.inputs, *options.labels);
+  check_output(options.output.file, kMapKind, label_files(chosen.inputs));
 
-  const MapFromFiles built = build(inputs, checked_options, options, common);
+  const MapFromFiles built = build(chosen.inputs, checked_options, options, common);
   warn(built, options.label_scheme);
   reading.add(built.findings);
+  if (chosen.poses) reading.add(*options.poses, chosen.poses->poses.findings);
   reading.warn();
   save_map(options.output.file, built.map, options.output.save);
   const std::chrono::duration<double> elapsed = std::chrono::steady_clock::now() - start;
-  print(built, options.output.file, inputs, reading, elapsed.count(), common.json);
+  print(built, options.output.file, chosen, reading, elapsed.count(), common.json);
   return ExitCode::kDone;
 }
 

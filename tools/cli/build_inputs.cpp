@@ -17,17 +17,15 @@ namespace vdbmap::cli {
 namespace {
 
 // A file of poses may go on after the last scan, as that of a whole drive does, but not end before it.
-Trajectory read_poses(const std::filesystem::path& path, std::size_t num_scans) {
-  Trajectory poses = read_trajectory(path);
+void check_count(const Trajectory& poses, const std::filesystem::path& path, std::size_t num_scans) {
   const std::string counts = fmt::format("{} poses for {} scans", poses.size(), num_scans);
   if (poses.size() < num_scans) throw IoError::malformed(path, counts);
   if (poses.size() > num_scans) spdlog::warn("{}: {}, those left over are not used", path.string(), counts);
-  return poses;
 }
 
 std::vector<MapInput> with_poses(const std::vector<ScanPlace>& scans, const std::vector<std::size_t>& chosen,
-                                 const std::filesystem::path& path) {
-  const Trajectory poses = read_poses(path, scans.size());
+                                 const Trajectory& poses, const std::filesystem::path& path) {
+  check_count(poses, path, scans.size());
   std::vector<MapInput> inputs;
   for (const std::size_t i : chosen) {
     if (poses.map_from_scan[i]) inputs.push_back({scans[i], poses.map_from_scan[i]});
@@ -46,16 +44,20 @@ void require_existing(const std::filesystem::path& path) {
 
 }  // namespace
 
-std::vector<MapInput> choose_inputs(const std::vector<ScanPlace>& scans, const ScanSelection& selection,
-                                    const std::optional<std::filesystem::path>& poses) {
+ChosenInputs choose_inputs(const std::vector<ScanPlace>& scans, const ScanSelection& selection,
+                           const std::optional<std::filesystem::path>& poses, PoseFrame frame) {
   const std::vector<std::size_t> chosen = selection.indices(scans.size());
   if (chosen.empty()) {
     throw std::invalid_argument(fmt::format("{} chooses none of {} scans", selection.text(), scans.size()));
   }
-  if (poses) return with_poses(scans, chosen, *poses);
-  std::vector<MapInput> inputs;
-  for (const std::size_t i : chosen) inputs.push_back({scans[i], std::nullopt});
-  return inputs;
+  ChosenInputs result;
+  if (poses) {
+    result.poses = read_scan_poses(*poses, scans, frame);
+    result.inputs = with_poses(scans, chosen, result.poses->poses, *poses);
+  } else {
+    for (const std::size_t i : chosen) result.inputs.push_back({scans[i], std::nullopt});
+  }
+  return result;
 }
 
 void add_label_files(std::vector<MapInput>& inputs, const std::filesystem::path& labels) {

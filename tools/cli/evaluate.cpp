@@ -13,6 +13,7 @@
 #include "tools/cli/evaluation_text.h"
 #include "tools/cli/map_output.h"
 #include "tools/cli/output.h"
+#include "tools/cli/reading.h"
 #include "tools/cli/scan_selection.h"
 #include "vdbmap/core/error.h"
 #include "vdbmap/io/trajectory_file.h"
@@ -31,11 +32,7 @@ struct EvaluateOptions {
 };
 
 /// Estimated poses beside the true ones of the same scans.
-struct Comparison {
-  Trajectory estimate;
-  Trajectory truth;
-  std::size_t num_unmatched = 0;
-};
+using Comparison = registration::TimeAssociation;
 
 std::string check_json_name(const std::string& name) {
   if (name.empty() || name.ends_with(".json")) return "";
@@ -57,7 +54,13 @@ void add_json(CLI::App& app, EvaluateOptions& options) {
 
 void add_options(CLI::App& app, EvaluateOptions& options) {
   app.add_option("ESTIMATE", options.estimate, "Estimated poses (KITTI or TUM)")->type_name("FILE")->required();
-  app.add_option("TRUTH", options.truth, "True poses (KITTI or TUM)")->type_name("FILE")->required();
+  app.add_option(
+         "TRUTH", options.truth,
+         "True poses (KITTI or TUM); each without an estimate is missing. Of poses that are denser in time than "
+         "the estimates, only those count as missing that fill a hole between estimates, one for each of "
+         "their own intervals")
+      ->type_name("FILE")
+      ->required();
   add_scan_selection(app, options.selection);
   app.add_option("--max-time-difference", options.max_time_difference,
                  "Two TUM files are compared by time: so far apart the times of a scan may be [s]")
@@ -82,16 +85,20 @@ Comparison compare_by_time(const Trajectory& estimate, const Trajectory& truth, 
     throw IoError::malformed(options.estimate, fmt::format("no time within {} s of one in {}",
                                                            options.max_time_difference, options.truth.string()));
   }
-  return {std::move(association.estimate), truth, association.num_unmatched};
+  return association;
 }
 
 // A TUM file leaves missing poses out, so that lines tell nothing; in a KITTI file they are all there is.
 Comparison read_poses(const EvaluateOptions& options) {
   const Trajectory estimate = read_trajectory(options.estimate);
   const Trajectory truth = read_trajectory(options.truth);
+  ReadingReport reading;
+  reading.add(options.estimate, estimate.findings);
+  reading.add(options.truth, truth.findings);
+  reading.warn();
   const bool have_times = !estimate.times.empty() && !truth.times.empty();
   if (have_times) return compare_by_time(estimate, select(truth, options.selection), options);
-  return {estimate, read_selected_poses(options.truth, options.selection, estimate.size())};
+  return {estimate, selected_poses(truth, options.truth, options.selection, estimate.size())};
 }
 
 void check_truth(const Comparison& poses, const EvaluateOptions& options) {
@@ -116,6 +123,7 @@ ExitCode run(const EvaluateOptions& options, const CommonOptions&) {
   check_truth(poses, options);
   Evaluation evaluation = evaluate(poses.estimate, poses.truth);
   evaluation.num_unmatched = poses.num_unmatched;
+  evaluation.num_not_judged = poses.num_not_judged;
 
   if (!options.plot.empty()) write_plot(options, poses);
   if (!options.json.empty()) write_json(options.json, json_of(evaluation));

@@ -136,6 +136,9 @@ std::string text_of(const Evaluation& evaluation) {
           success_row(error, registration::kCoarseSuccess) +
           fmt::format("missing: {} of {} poses\n", error.num_missing, error.num_judged);
   if (evaluation.num_unmatched > 0) text += fmt::format("near no true time: {} poses\n", evaluation.num_unmatched);
+  if (evaluation.num_not_judged > 0) {
+    text += fmt::format("true poses between the scans, not judged: {}\n", evaluation.num_not_judged);
+  }
   return text + relative_text(evaluation);
 }
 
@@ -144,6 +147,7 @@ ordered_json json_of(const Evaluation& evaluation) {
   return {{"num_poses", error.num_judged},
           {"num_missing", error.num_missing},
           {"num_unmatched", evaluation.num_unmatched},
+          {"num_not_judged", evaluation.num_not_judged},
           {"xy_m", json_of(error.xy)},
           {"z_m", json_of(error.z)},
           {"translation_m", json_of(error.translation)},

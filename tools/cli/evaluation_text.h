@@ -21,7 +21,8 @@ struct Evaluation {
   std::optional<registration::TrajectoryError> aligned;  ///< after it
   std::vector<registration::RelativeError> over_short_lengths;
   std::vector<registration::RelativeError> over_kitti_lengths;
-  std::size_t num_unmatched = 0;  ///< estimates whose time is near no true one
+  std::size_t num_unmatched = 0;   ///< estimates whose time is near no true one
+  std::size_t num_not_judged = 0;  ///< true poses at whose time no scan was taken
 };
 
 /// Compares an estimate with as many true poses.

@@ -3,6 +3,7 @@
 #include <optional>
 #include <stdexcept>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include <nlohmann/json.hpp>
@@ -14,6 +15,7 @@
 #include "tools/cli/localize_report.h"
 #include "tools/cli/map_output.h"
 #include "tools/cli/output.h"
+#include "tools/cli/pose_frame.h"
 #include "tools/cli/reading.h"
 #include "tools/cli/scan_selection.h"
 #include "vdbmap/core/error.h"
@@ -31,6 +33,7 @@ struct LocalizeCommandOptions {
   std::filesystem::path output;
   std::optional<std::filesystem::path> report;
   std::string format = "kitti";
+  PoseFrame pose_frame = PoseFrame::kUnknown;
   ScanSelection selection;
   registration::LocalizerOptions localizer;
   ReadOptions read{.is_in_sensor_frame = true};
@@ -77,16 +80,20 @@ void add_options(CLI::App& app, LocalizeCommandOptions& options) {
                  "Share of the points that must lie on the map for a scan to count as found, [0.3]")
       ->check(CLI::Range(0.0, 1.0).description(""))
       ->type_name("SHARE");
+  add_pose_frame(app, options.pose_frame);
   add_read_options(app, options.read);
   add_scan_selection(app, options.selection);
 }
 
-// One guess for every scan, or a single one for the first.
-Trajectory read_guesses(const std::filesystem::path& path, const ScanSelection& selection, std::size_t num_scans) {
-  const Trajectory guesses = read_trajectory(path);
-  if (guesses.size() != 1) return read_selected_poses(path, selection, num_scans);
-  if (!guesses.map_from_scan.front()) throw IoError::malformed(path, "its only guess is missing");
-  return guesses;
+// Poses of odometry, one for every scan, or guesses, which may be a single one for the first.
+ScanPoses read_given(const std::filesystem::path& path, const std::vector<ScanPlace>& scans,
+                     const LocalizeCommandOptions& options) {
+  ScanPoses given = read_scan_poses(path, scans, options.pose_frame);
+  Trajectory& poses = given.poses;
+  const bool is_single_guess = options.initial && poses.size() == 1;
+  if (is_single_guess && !poses.map_from_scan.front()) throw IoError::malformed(path, "its only guess is missing");
+  if (!is_single_guess) poses = selected_poses(poses, path, options.selection, scans.size());
+  return given;
 }
 
 void check_outputs(const LocalizeCommandOptions& options, const std::vector<std::filesystem::path>& files) {
@@ -108,40 +115,35 @@ std::vector<ScanPlace> choose_scans(const std::vector<std::filesystem::path>& fi
   throw std::invalid_argument(fmt::format("{} chooses none of {} scans", selection.text(), all.size()));
 }
 
-// What is written of a localization: the poses, and the times they have.
-struct Localized {
-  LocalizeReport report;
-  std::vector<double> times;
-};
-
-Localized localize(const std::vector<ScanPlace>& scans, const LocalizeCommandOptions& options,
-                   const CommonOptions& common) {
-  std::optional<Trajectory> given;  // guesses, or poses of odometry
-  if (options.initial) given = read_guesses(*options.initial, options.selection, scans.size());
-  if (options.odometry) given = read_selected_poses(*options.odometry, options.selection, scans.size());
+LocalizeReport localize(const std::vector<ScanPlace>& scans, const LocalizeCommandOptions& options,
+                        const CommonOptions& common) {
+  const std::optional<std::filesystem::path>& file = options.initial ? options.initial : options.odometry;
+  std::optional<ScanPoses> given;
+  if (file) given = read_given(*file, scans, options);
   const VoxelMap map = load_map(options.map);
   const std::string reason = options.initial ? "" : registration::reason_not_searchable(map);
   if (!reason.empty()) throw IoError::malformed(options.map, reason);
-  std::vector<double> times = given ? given->times : std::vector<double>();
-  if (options.initial) {
-    return {localize_from_guesses(scans, map, *given, options.localizer.fine, options.localizer.found, options.read,
-                                  common),
-            times};
-  }
-  return {localize_without_guess(scans, map, given, options.localizer, options.read, common), times};
+  const ChosenScans chosen{scans, options.selection.every - 1};
+  const std::optional<Trajectory> poses = given ? std::optional(given->poses) : std::nullopt;
+  LocalizeReport report = options.initial
+                              ? localize_from_guesses(chosen, map, *poses, options.localizer.fine,
+                                                      options.localizer.found, options.read, common)
+                              : localize_without_guess(chosen, map, poses, options.localizer, options.read, common);
+  if (file) report.reading.add(*file, poses->findings);
+  report.given = std::move(given);
+  return report;
 }
 
 ExitCode run(const LocalizeCommandOptions& options, const CommonOptions& common) {
   ReadingReport listing;
   const std::vector<std::filesystem::path> files = list_inputs(options.scans, listing);
   check_outputs(options, files);
-  const Localized localized = localize(choose_scans(files, options.selection, options.read), options, common);
-  const LocalizeReport& report = localized.report;
+  const LocalizeReport report = localize(choose_scans(files, options.selection, options.read), options, common);
   listing.warn();
   warn(report);
 
   const auto format = options.format == "tum" ? TrajectoryFormat::kTum : TrajectoryFormat::kKitti;
-  write_trajectory(options.output, report.trajectory(localized.times), format);
+  write_trajectory(options.output, report.trajectory(), format);
   if (options.report) write_json(*options.report, json_of(report, options.output));
   if (common.json) {
     print_json(json_of(report, options.output));

@@ -1,85 +1,56 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "tools/cli/localize_modes.h"
 
-#include <functional>
 #include <string>
 #include <utility>
 
+#include "registration/guided_localizer.h"
 #include "registration/sequence.h"
 #include "tools/cli/progress.h"
 #include "tools/cli/read_scan.h"
 #include "vdbmap/core/error.h"
 
 namespace vdbmap::cli {
-namespace {
-
-using registration::ConstantVelocity;
-using registration::LocalizedScan;
-
-using Localize = std::function<LocalizedScan(const ScanPlace&, const Eigen::Isometry3d& guess)>;
-
-LocalizeReport localize_each(const std::vector<ScanPlace>& scans, const Trajectory& guesses, const Localize& localize,
-                             Progress& progress) {
-  LocalizeReport report;
-  for (std::size_t i = 0; i < scans.size(); ++i) {
-    const auto& guess = guesses.map_from_scan[i];
-    report.scans.push_back(row_of(scans[i], guess ? localize(scans[i], *guess) : LocalizedScan{{}, "no guess"}));
-    progress.advance();
-  }
-  return report;
-}
-
-LocalizeReport follow_motion(const std::vector<ScanPlace>& scans, const Eigen::Isometry3d& first_guess,
-                             const Localize& localize, Progress& progress) {
-  LocalizeReport report;
-  ConstantVelocity motion(first_guess);
-  for (const ScanPlace& scan : scans) {
-    const LocalizedScan localized = localize(scan, motion.guess());
-    if (localized.found()) {
-      motion.found(localized.fine.map_from_scan);
-    } else {
-      motion.lost();
-    }
-    report.scans.push_back(row_of(scan, localized));
-    progress.advance();
-  }
-  return report;
-}
-
-}  // namespace
-
-LocalizeReport localize_from_guesses(const std::vector<ScanPlace>& scans, const VoxelMap& map,
-                                     const Trajectory& guesses, const registration::FineOptions& fine,
-                                     const registration::FoundCriteria& criteria, const ReadOptions& read,
-                                     const CommonOptions& common) {
+LocalizeReport localize_from_guesses(const ChosenScans& scans, const VoxelMap& map, const Trajectory& guesses,
+                                     const registration::FineOptions& fine, const registration::FoundCriteria& criteria,
+                                     const ReadOptions& read, const CommonOptions& common) {
+  registration::GuidedLocalizer localizer(map, fine, criteria);
+  const bool are_followed = guesses.size() == 1;
+  if (are_followed) localizer.follow_from(guesses.map_from_scan.front().value());
+  Progress progress("localizing scans", scans.places.size(), common);
   ScanReader reader(read);
-  ReadingReport reading;
-  const Localize localize = [&](const ScanPlace& scan, const Eigen::Isometry3d& guess) {
-    const ReadResult result = reader.read(scan);
-    reading.add(scan.file, result.findings);
-    return registration::localize_scan(result.cloud, map, guess, fine, criteria);
-  };
-  Progress progress("localizing scans", scans.size(), common);
-  LocalizeReport report = guesses.size() != 1
-                              ? localize_each(scans, guesses, localize, progress)
-                              : follow_motion(scans, guesses.map_from_scan.front().value(), localize, progress);
-  report.reading = std::move(reading);
+  LocalizeReport report;
+  for (std::size_t i = 0; i < scans.places.size(); ++i) {
+    std::string reason;
+    const std::optional<PointCloud> scan = read_scan(reader, scans.places[i], report.reading, reason);
+    if (!scan) {
+      localizer.skip(reason);
+    } else if (are_followed) {
+      localizer.add(*scan);
+    } else {
+      localizer.add(*scan, guesses.map_from_scan[i]);
+    }
+    localizer.pass_over(scans.num_left_out);
+    progress.advance();
+  }
+  const std::vector<registration::LocalizedScan> results = localizer.finish();
+  for (std::size_t i = 0; i < results.size(); ++i) report.scans.push_back(row_of(scans.places[i], results[i]));
   return report;
 }
 
-LocalizeReport localize_without_guess(const std::vector<ScanPlace>& scans, const VoxelMap& map,
+LocalizeReport localize_without_guess(const ChosenScans& scans, const VoxelMap& map,
                                       const std::optional<Trajectory>& odometry,
                                       const registration::LocalizerOptions& options, const ReadOptions& read,
                                       const CommonOptions& common) {
   registration::OdometryOptions odometry_options;
   odometry_options.range = options.fine.range;
   registration::SequenceLocalizer localizer(map, options, odometry_options);
-  Progress progress("localizing scans", scans.size(), common);
+  Progress progress("localizing scans", scans.places.size(), common);
   ScanReader reader(read);
   LocalizeReport report;
-  for (std::size_t i = 0; i < scans.size(); ++i) {
+  for (std::size_t i = 0; i < scans.places.size(); ++i) {
     std::string reason;
-    std::optional<PointCloud> scan = read_scan(reader, scans[i], report.reading, reason);
+    std::optional<PointCloud> scan = read_scan(reader, scans.places[i], report.reading, reason);
     if (!scan) {
       localizer.skip(reason);
     } else if (odometry) {
@@ -87,12 +58,14 @@ LocalizeReport localize_without_guess(const std::vector<ScanPlace>& scans, const
     } else {
       localizer.add(std::move(*scan));
     }
+    localizer.pass_over(scans.num_left_out);
     progress.advance();
   }
 
   registration::SequenceResult result = localizer.finish();
   report.batches = std::move(result.batches);
-  for (std::size_t i = 0; i < scans.size(); ++i) report.scans.push_back(row_of(scans[i], result.scans[i]));
+  for (std::size_t i = 0; i < scans.places.size(); ++i)
+    report.scans.push_back(row_of(scans.places[i], result.scans[i]));
   return report;
 }
 

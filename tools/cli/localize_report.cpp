@@ -8,6 +8,7 @@
 #include <spdlog/spdlog.h>
 
 #include "tools/cli/json_text.h"
+#include "tools/cli/pose_frame.h"
 
 namespace vdbmap::cli {
 namespace {
@@ -67,20 +68,24 @@ std::size_t LocalizeReport::num_found() const {
   return static_cast<std::size_t>(std::ranges::count_if(scans, [](const LocalizedRow& row) { return row.found(); }));
 }
 
-Trajectory LocalizeReport::trajectory(const std::vector<double>& times) const {
+Trajectory LocalizeReport::trajectory() const {
   Trajectory trajectory;
   for (const LocalizedRow& row : scans) {
     trajectory.map_from_scan.push_back(row.found() ? std::optional(row.map_from_scan) : std::nullopt);
   }
-  if (times.size() == scans.size()) trajectory.times = times;
+  if (given && given->poses.times.size() == scans.size()) trajectory.times = given->poses.times;
   return trajectory;
 }
 
 LocalizedRow row_of(const ScanPlace& scan, const registration::LocalizedScan& localized) {
   const registration::FineResult& fine = localized.fine;
-  return {
-      scan, fine.map_from_scan, fine.covariance, fine.inlier_share, descriptions(fine.unobservable), localized.reason,
-      ""};
+  return {scan,
+          fine.map_from_scan,
+          fine.covariance,
+          fine.inlier_share,
+          descriptions(fine.unobservable),
+          localized.reason,
+          localized.time_problem};
 }
 
 LocalizedRow row_of(const ScanPlace& scan, const registration::SequenceScan& localized) {
@@ -114,6 +119,7 @@ void warn(const LocalizeReport& report) {
 nlohmann::ordered_json json_of(const LocalizeReport& report, const std::filesystem::path& output) {
   nlohmann::ordered_json json = {
       {"file", output.string()}, {"scans", report.scans.size()}, {"found", report.num_found()}};
+  if (report.given) add_pose_frame(json, *report.given);
   json["results"] = nlohmann::ordered_json::array();
   for (const LocalizedRow& row : report.scans) json["results"].push_back(json_of(row));
   if (report.batches.empty()) return json;

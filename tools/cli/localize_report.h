@@ -3,6 +3,7 @@
 
 #include <cstddef>
 #include <filesystem>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -12,6 +13,7 @@
 #include "registration/localize.h"
 #include "registration/localizer.h"
 #include "tools/cli/reading.h"
+#include "vdbmap/io/scan_poses.h"
 #include "vdbmap/io/scan_sequence.h"
 #include "vdbmap/io/trajectory_file.h"
 
@@ -35,11 +37,12 @@ struct LocalizeReport {
   std::vector<LocalizedRow> scans;
   std::vector<registration::SequenceBatch> batches;  ///< of a search without a first guess, else empty
   ReadingReport reading;                             ///< what was found in the files
+  std::optional<ScanPoses> given;                    ///< guesses, or poses of odometry
 
   std::size_t num_found() const;
 
-  /// With a pose for each scan that was found. `times` [s]: one a scan, or empty.
-  Trajectory trajectory(const std::vector<double>& times) const;
+  /// With a pose for each scan that was found, and the times of the poses given where there is one a scan.
+  Trajectory trajectory() const;
 };
 
 LocalizedRow row_of(const ScanPlace& scan, const registration::LocalizedScan& localized);

@@ -14,6 +14,7 @@
 #include <spdlog/fmt/fmt.h>
 #include <spdlog/spdlog.h>
 
+#include "registration/odometry/step_trajectory.h"
 #include "tools/cli/command.h"
 #include "tools/cli/json_text.h"
 #include "tools/cli/map_output.h"
@@ -121,6 +122,7 @@ std::vector<ScanReport> follow(const std::vector<ScanPlace>& scans, const Odomet
     std::optional<PointCloud> scan = read_scan(reader, place, reading, reason);
     reports.push_back({place, scan ? odometry.register_scan(*scan) : step_without_points(reason)});
     warn(reports.back());
+    odometry.pass_over(options.selection.every - 1 + (scan ? 0 : 1));
     if (scan) collector.add(std::move(*scan), reports.back().step);
     progress.advance();
   }
@@ -128,20 +130,18 @@ std::vector<ScanReport> follow(const std::vector<ScanPlace>& scans, const Odomet
   return reports;
 }
 
-// With the times of the scans' first points where they are usable and common to all scans.
 Trajectory trajectory_of(const std::vector<ScanReport>& reports) {
-  Trajectory trajectory;
-  bool has_times = true;
-  for (const ScanReport& report : reports) {
-    const OdometryStep& step = report.step;
-    trajectory.map_from_scan.push_back(step.registered() ? std::optional(step.first_from_scan) : std::nullopt);
-    const double time = step.motion.reference_time;
-    if (!step.registered()) continue;
-    has_times = has_times && step.has_time && (trajectory.times.empty() || time > trajectory.times.back());
-    trajectory.times.push_back(time);
+  std::vector<OdometryStep> steps;
+  for (const ScanReport& report : reports) steps.push_back(report.step);
+  return registration::trajectory_of(steps);
+}
+
+void warn_of_missing_times(const Trajectory& trajectory, const std::filesystem::path& file) {
+  std::size_t count = 0;
+  for (std::size_t i = 0; i < trajectory.times.size(); ++i) {
+    if (trajectory.map_from_scan[i] && std::isnan(trajectory.times[i])) ++count;
   }
-  if (!has_times || trajectory.times.size() != trajectory.size()) trajectory.times.clear();
-  return trajectory;
+  if (count > 0) spdlog::warn("{}: {} poses of scans without a usable time are left out", file.string(), count);
 }
 
 std::size_t count_registered(const std::vector<ScanReport>& reports) {
@@ -212,7 +212,9 @@ ExitCode run(const OdometryCommandOptions& options, const CommonOptions& common)
   const std::vector<ScanReport> reports = follow(scans, options, stop, collector, common);
   if (stop.is_made()) spdlog::warn("stopped after {} of {} scans", reports.size(), scans.size());
   const auto format = options.format == "tum" ? TrajectoryFormat::kTum : TrajectoryFormat::kKitti;
-  write_trajectory(options.outputs.poses, trajectory_of(reports), format);
+  const Trajectory trajectory = trajectory_of(reports);
+  if (format == TrajectoryFormat::kTum) warn_of_missing_times(trajectory, options.outputs.poses);
+  write_trajectory(options.outputs.poses, trajectory, format);
   collector.write();
   print(reports, scans.size(), options, common.json);
   if (stop.is_made()) return stop.exit_code();

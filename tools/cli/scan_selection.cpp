@@ -41,6 +41,7 @@ std::vector<ScanPlace> select(const std::vector<ScanPlace>& scans, const ScanSel
 
 Trajectory select(const Trajectory& poses, const ScanSelection& selection) {
   Trajectory chosen;
+  chosen.findings = poses.findings;
   for (const std::size_t i : selection.indices(poses.size())) {
     chosen.map_from_scan.push_back(poses.map_from_scan[i]);
     if (!poses.times.empty()) chosen.times.push_back(poses.times[i]);
@@ -48,9 +49,8 @@ Trajectory select(const Trajectory& poses, const ScanSelection& selection) {
   return chosen;
 }
 
-Trajectory read_selected_poses(const std::filesystem::path& path, const ScanSelection& selection,
-                               std::size_t num_wanted) {
-  const Trajectory poses = read_trajectory(path);
+Trajectory selected_poses(const Trajectory& poses, const std::filesystem::path& path, const ScanSelection& selection,
+                          std::size_t num_wanted) {
   if (poses.size() == num_wanted) return poses;
   const Trajectory chosen = select(poses, selection);
   if (chosen.size() == num_wanted) return chosen;

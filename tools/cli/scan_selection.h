@@ -34,9 +34,9 @@ std::vector<ScanPlace> select(const std::vector<ScanPlace>& scans, const ScanSel
 /// The chosen poses, with their times.
 Trajectory select(const Trajectory& poses, const ScanSelection& selection);
 
-/// The poses of `path` for the `num_wanted` chosen scans: all of them when there are just so many, else those at the
-/// places of the selection. Throws IoError naming both counts when neither fits.
-Trajectory read_selected_poses(const std::filesystem::path& path, const ScanSelection& selection,
-                               std::size_t num_wanted);
+/// Of the poses that `path` holds those for the `num_wanted` chosen scans: all of them when there are just so many,
+/// else those at the places of the selection. Throws IoError naming both counts when neither fits.
+Trajectory selected_poses(const Trajectory& poses, const std::filesystem::path& path, const ScanSelection& selection,
+                          std::size_t num_wanted);
 
 }  // namespace vdbmap::cli
