@@ -52,7 +52,7 @@ bool first_scan_lies_level(std::span<const ScanPlace> scans) {
   }
 }
 
-constexpr const char* kAdvice =
+constexpr const char* kCalibrationAdvice =
     "; put KITTI's calib.txt beside them for --pose-frame camera, or say --pose-frame lidar";
 
 }  // namespace
@@ -142,7 +142,7 @@ ScanPoses read_scan_poses(const std::filesystem::path& path, std::span<const Sca
   if (!calibration) {
     throw IoError::malformed(path, (is_told ? std::string("the poses are the camera's, but there is no calib.txt")
                                             : "the poses go mostly along their z axis, as a camera's do") +
-                                       kAdvice);
+                                       kCalibrationAdvice);
   }
   read.poses = lidar_poses(std::move(read.poses), read_camera_from_lidar(*calibration));
   read.calibration = *calibration;
