@@ -18,7 +18,7 @@ namespace {
 constexpr double kPeriod = 0.1;  // [s]
 constexpr int kTurns = 8;
 
-const VoxelMap& village_map() {
+const VoxelMap& guided_map() {
   static const VoxelMap map = build_map(test::survey_of_village());
   return map;
 }
@@ -65,7 +65,7 @@ void expect_first_point(const LocalizedScan& scan, int number) {
 }
 
 TEST(GuidedLocalizer, FindsFirstPointsFromGuessesOfEachScan) {
-  GuidedLocalizer localizer(village_map());
+  GuidedLocalizer localizer(guided_map());
   for (int i = 0; i < kTurns; ++i) localizer.add(turn(i), guess(i));
   const std::vector<LocalizedScan> found = localizer.finish();
   ASSERT_EQ(found.size(), turns().size());
@@ -73,7 +73,7 @@ TEST(GuidedLocalizer, FindsFirstPointsFromGuessesOfEachScan) {
 }
 
 TEST(GuidedLocalizer, FindsFirstPointsFromAGuessOfTheFirstScan) {
-  GuidedLocalizer localizer(village_map());
+  GuidedLocalizer localizer(guided_map());
   localizer.follow_from(guess(0));
   for (int i = 0; i < kTurns; ++i) localizer.add(turn(i));
   const std::vector<LocalizedScan> found = localizer.finish();
@@ -82,7 +82,7 @@ TEST(GuidedLocalizer, FindsFirstPointsFromAGuessOfTheFirstScan) {
 
 TEST(GuidedLocalizer, TimesMayBeginAnewAndScansBeLeftOut) {
   for (const bool is_followed : {true, false}) {
-    GuidedLocalizer localizer(village_map());
+    GuidedLocalizer localizer(guided_map());
     if (is_followed) localizer.follow_from(guess(0));
     const std::vector<int> numbers = {0, 1, 3, 5, 7};  // what is followed must know the motion first
     for (const int i : numbers) {
@@ -100,7 +100,7 @@ TEST(GuidedLocalizer, ScansOfNoUseKeepTheirPlaceAndTheOthersTheirs) {
   PointCloud far;
   far.positions = {{500, 0, 0}, {0, 500, 0}};
   for (const bool is_followed : {true, false}) {
-    GuidedLocalizer localizer(village_map());
+    GuidedLocalizer localizer(guided_map());
     if (is_followed) localizer.follow_from(guess(0));
     const auto add = [&](const PointCloud& scan, int i) {
       is_followed ? localizer.add(scan) : localizer.add(scan, guess(i));
@@ -123,7 +123,7 @@ TEST(GuidedLocalizer, ScansOfNoUseKeepTheirPlaceAndTheOthersTheirs) {
 }
 
 TEST(GuidedLocalizer, AScanWithoutAGuessIsNotLookedFor) {
-  GuidedLocalizer localizer(village_map());
+  GuidedLocalizer localizer(guided_map());
   localizer.add(turn(0), guess(0));
   localizer.add(turn(1), std::nullopt);
   localizer.add(turn(2), guess(2));
@@ -134,10 +134,10 @@ TEST(GuidedLocalizer, AScanWithoutAGuessIsNotLookedFor) {
 
 TEST(GuidedLocalizer, ScansWithoutTimesAreAlignedAsTheyAre) {
   PointCloud still = test::scan_scene(test::village(), truth(3));
-  GuidedLocalizer localizer(village_map());
+  GuidedLocalizer localizer(guided_map());
   for (int i = 0; i < 2; ++i) localizer.add(still, guess(3));
   const std::vector<LocalizedScan> found = localizer.finish();
-  const LocalizedScan alone = localize_scan(still, village_map(), guess(3));
+  const LocalizedScan alone = localize_scan(still, guided_map(), guess(3));
   for (const LocalizedScan& scan : found) {
     EXPECT_EQ(scan.fine.map_from_scan.matrix(), alone.fine.map_from_scan.matrix());
   }
@@ -145,7 +145,7 @@ TEST(GuidedLocalizer, ScansWithoutTimesAreAlignedAsTheyAre) {
 
 // The middle of its times is all that a single scan tells.
 TEST(GuidedLocalizer, ASingleScanIsTakenAsIfTheSensorStoodStill) {
-  GuidedLocalizer localizer(village_map());
+  GuidedLocalizer localizer(guided_map());
   localizer.add(turn(3), guess(3));
   const LocalizedScan found = localizer.finish().front();
   EXPECT_TRUE(found.found()) << found.reason;
@@ -153,7 +153,7 @@ TEST(GuidedLocalizer, ASingleScanIsTakenAsIfTheSensorStoodStill) {
 }
 
 TEST(GuidedLocalizer, IsAsNewAfterFinish) {
-  GuidedLocalizer localizer(village_map());
+  GuidedLocalizer localizer(guided_map());
   for (int round = 0; round < 2; ++round) {
     for (int i = 0; i < 3; ++i) localizer.add(turn(i), guess(i));
     const std::vector<LocalizedScan> found = localizer.finish();
@@ -164,7 +164,7 @@ TEST(GuidedLocalizer, IsAsNewAfterFinish) {
 
 TEST(GuidedLocalizer, DoesNotDependOnTheNumberOfThreads) {
   const auto poses = [] {
-    GuidedLocalizer localizer(village_map());
+    GuidedLocalizer localizer(guided_map());
     for (int i = 0; i < 4; ++i) localizer.add(turn(i), guess(i));
     std::vector<double> numbers;
     for (const LocalizedScan& scan : localizer.finish()) {
