@@ -65,13 +65,39 @@ class SeekableArchive : public openvdb::io::Archive {
     for (const GridMaker& make : grids) {
       const openvdb::GridBase::ConstPtr grid = make();
       openvdb::io::GridDescriptor descriptor(grid->getName(), grid->type(), grid->saveFloatAsHalf());
-      writeGrid(descriptor, grid, stream, /*seekable=*/true);
+      if (grid->constBaseTree().leafCount() > 0) {
+        writeGrid(descriptor, grid, stream, /*seekable=*/true);
+      } else {
+        write_streamed(descriptor, *grid, stream);
+      }
       openvdb::io::setDataCompression(stream, compression());  // the grid may have set its own
     }
     openvdb::io::clearStreamMetadataPtr(stream);
   }
 
  private:
+  // What Archive::writeGrid() does, but for a table of the leaves that readers load later: it would be that of a tree
+  // whose leaves are not there, and readers end at its end.
+  void write_streamed(openvdb::io::GridDescriptor& descriptor, const openvdb::GridBase& grid,
+                      std::ostream& stream) const {
+    descriptor.writeHeader(stream);
+    const std::streampos offsets = stream.tellp();
+    descriptor.writeStreamPos(stream);
+    descriptor.setGridPos(stream.tellp());
+    setGridCompression(stream, grid);
+    const auto described = openvdb::ConstPtrCast<openvdb::GridBase>(grid.copyGrid());
+    described->addStatsMetadata();
+    described->writeMeta(stream);
+    grid.writeTransform(stream);
+    grid.writeTopology(stream);
+    descriptor.setBlockPos(stream.tellp());
+    grid.writeBuffers(stream);
+    descriptor.setEndPos(stream.tellp());
+    stream.seekp(offsets);
+    descriptor.writeStreamPos(stream);
+    stream.seekp(descriptor.getEndPos());
+  }
+
   struct Entry {
     openvdb::io::GridDescriptor descriptor;
     openvdb::GridBase::Ptr grid;  // of its type, without content
