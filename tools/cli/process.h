@@ -5,8 +5,8 @@ namespace vdbmap::cli {
 
 /// Sets up the process before anything opens a file: signals that end it (Ctrl-C, SIGTERM, a terminal that is closed,
 /// no more processor time) leave no unfinished file, writing to a closed pipe or beyond the limit of file sizes is an
-/// error like any other, no file of ours takes the place of a closed standard stream, memory that runs out where nothing
-/// can be thrown ends with one line and exit code 4, and log goes to stderr, without control characters in it.
+/// error like any other, no file of ours takes the place of a closed standard stream, memory that runs out where
+/// nothing can be thrown ends with one line and exit code 4, and log goes to stderr, without control characters in it.
 void prepare_process();
 
 /// Has all signals that end the process go to `handler`, but a hang-up that is ignored (nohup) stays so.

@@ -22,11 +22,11 @@ PointFormat export_format(const std::filesystem::path& path);
 void write_points(const std::filesystem::path& path, const PointCloud& cloud,
                   const std::optional<int>& epsg = std::nullopt);
 
-/// Writes points_of_level() in the format of the extension, PLY and XYZ with the coordinates of mean_in_original_system():
-/// in the digits that they have, a map built of them has the same means. LAS with the EPSG code and with classes of ASPRS's numbers
-/// (asprs_label()), as far as the map knows whose its own are; one above the 31 that LAS 1.2 has room for becomes 1,
-/// unclassified. Throws IoError, and
-/// std::invalid_argument as export_format() and write_las() do.
+/// Writes points_of_level() in the format of the extension, PLY and XYZ with the coordinates of
+/// mean_in_original_system(): in the digits that they have, a map built of them has the same means. LAS with the EPSG
+/// code and with classes of ASPRS's numbers (asprs_label()), as far as the map knows whose its own are; one above the
+/// 31 that LAS 1.2 has room for becomes 1, unclassified. Throws IoError, and std::invalid_argument as export_format()
+/// and write_las() do.
 void export_points(const std::filesystem::path& path, const VoxelMap& map, const VoxelLevel& level);
 
 }  // namespace vdbmap

@@ -115,8 +115,8 @@ void check_expansion(const ByteReader& reader, std::uint64_t num_points, std::ui
   const std::uint64_t size = num_points * std::max(point_size, kMostOfPoint);
   const std::uint64_t most = std::max(kAlways, kPerByte * compressed_size);
   if (size <= most) return;
-  reader.fail(std::to_string(compressed_size) + " bytes would expand to " + std::to_string(num_points) +
-              " points of " + std::to_string(size) + " bytes, allowed are " + std::to_string(most) +
+  reader.fail(std::to_string(compressed_size) + " bytes would expand to " + std::to_string(num_points) + " points of " +
+              std::to_string(size) + " bytes, allowed are " + std::to_string(most) +
               " bytes: write the file uncompressed");
 }
 
@@ -132,7 +132,8 @@ ReadResult read_compressed(ByteReader& reader, const PcdHeader& header, const Fi
   }
   const std::uint64_t begin = reader.offset();
   const std::string_view compressed = reader.bytes(compressed_size);
-  if (size / kMostLzfExpansion <= compressed_size) check_expansion(reader, num_points, header.point_size(), compressed_size);
+  if (size / kMostLzfExpansion <= compressed_size)
+    check_expansion(reader, num_points, header.point_size(), compressed_size);
   const std::optional<std::string> data = lzf_decompress(compressed, size);
   if (!data) {
     throw IoError::malformed_at_byte(reader.path(), begin, "not LZF data of " + std::to_string(size) + " bytes");

@@ -185,7 +185,8 @@ TEST_F(TrajectoryFile, MatricesThatAreNotRotationsAreRefused) {
 }
 
 TEST_F(TrajectoryFile, QuaternionsThatAreNotRotationsAreRefused) {
-  for (const std::string line : {"0 1 2 3 0 0 0 1.1", "0 1 2 3 0 0 0 0.98", "0 1 2 3 0 0 0 1e-9", "0 1 2 3 1 1 1 1", "0 1 2 3 1e200 0 0 0"}) {
+  for (const std::string line :
+       {"0 1 2 3 0 0 0 1.1", "0 1 2 3 0 0 0 0.98", "0 1 2 3 0 0 0 1e-9", "0 1 2 3 1 1 1 1", "0 1 2 3 1e200 0 0 0"}) {
     EXPECT_NE(error_for(line).find(":1: quaternion is not a rotation"), std::string::npos) << line;
   }
 }
