@@ -4,7 +4,8 @@
 
 BEFORE and AFTER are the folders bin/ of two builds with VDBMAP_BUILD_BENCHMARKS=ON; DATA_FOLDER holds velodyne/ and poses.txt of a drive. In each of
 seven rounds every benchmark, and every command on a simulated street, runs before, after and before again: what another program on the machine does
-strikes all three alike. A row shows the median of after / before, and the spread of before / before: worse is only what lies beyond that.
+strikes all three alike. A row shows the median of after / before, and the spread of before / before: worse is only what lies beyond that. Ctrl-C
+shows what has been measured so far.
 """
 
 import json
@@ -18,11 +19,11 @@ import time
 
 ROUNDS = 7
 BENCHMARKS = {
-    "map_benchmark": "",
-    "fine_benchmark": "",
-    "odometry_benchmark": "",
-    "coarse_benchmark": "features|find_batches|localize_batches",
-    "render_benchmark": "render_street",
+    "map_benchmark": "build_map/.*threads:2|build_from_scans/threads:2|load_cloud_map/street",
+    "fine_benchmark": "align_scan/threads:2",
+    "odometry_benchmark": "register_scan/threads:2",
+    "coarse_benchmark": "^features/threads:2|find_batches/drive",
+    "render_benchmark": "render_street/.*threads:2",
 }
 
 
@@ -91,10 +92,14 @@ def main():
         for arguments in (["simulate", folder / "street", "--seed", "1"], ["build", folder / "street/epoch0/cloud.las", "-o", folder / "street.vdb"]):
             subprocess.run([str(before / "vdbmap"), *map(str, arguments), "--quiet"], check=True, stdout=subprocess.DEVNULL)
         rounds = []
-        for number in range(ROUNDS):
-            rounds.append([measure(programs, folder) for programs in (before, after, before)])
-            print(f"round {number + 1} of {ROUNDS}", file=sys.stderr)
-    print_table(rounds)
+        try:
+            for number in range(ROUNDS):
+                rounds.append([measure(programs, folder) for programs in (before, after, before)])
+                print(f"round {number + 1} of {ROUNDS}", file=sys.stderr)
+        except KeyboardInterrupt:
+            print("stopped", file=sys.stderr)
+    if rounds:
+        print_table(rounds)
 
 
 if __name__ == "__main__":
