@@ -21,6 +21,8 @@ if(VDBMAP_SANITIZE)
     target_compile_options(vdbmap_compiler INTERFACE $<${is_meant}:-fsanitize=${sanitizer}>)
   endforeach()
   target_compile_options(vdbmap_compiler INTERFACE -fno-omit-frame-pointer -fno-sanitize-recover=undefined)
+  # GCC warns of values that its own instrumentation makes look uninitialized.
+  target_compile_options(vdbmap_compiler INTERFACE $<$<CXX_COMPILER_ID:GNU>:-Wno-maybe-uninitialized>)
   target_link_options(vdbmap_compiler INTERFACE -fsanitize=${VDBMAP_SANITIZE})
 endif()
 
