@@ -6,7 +6,7 @@
 #include <optional>
 #include <vector>
 
-#include "vdbmap/io/trajectory_file.h"
+#include "vdbmap/io/poses/trajectory_file.h"
 
 namespace vdbmap::registration {
 

@@ -3,7 +3,7 @@
 
 #include <cstddef>
 
-#include "vdbmap/io/trajectory_file.h"
+#include "vdbmap/io/poses/trajectory_file.h"
 
 namespace vdbmap::registration {
 

@@ -3,7 +3,7 @@
 
 #include <string>
 
-#include "vdbmap/io/trajectory_file.h"
+#include "vdbmap/io/poses/trajectory_file.h"
 #include "vdbmap/render/image.h"
 
 namespace vdbmap::registration {

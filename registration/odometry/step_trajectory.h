@@ -4,7 +4,7 @@
 #include <span>
 
 #include "registration/odometry/odometry.h"
-#include "vdbmap/io/trajectory_file.h"
+#include "vdbmap/io/poses/trajectory_file.h"
 
 namespace vdbmap::registration {
 

@@ -5,8 +5,8 @@
 #include <optional>
 
 #include "tests/support/folders.h"
-#include "vdbmap/io/point_reader.h"
-#include "vdbmap/io/trajectory_file.h"
+#include "vdbmap/io/points/point_reader.h"
+#include "vdbmap/io/poses/trajectory_file.h"
 
 namespace vdbmap::benchmarks {
 namespace {

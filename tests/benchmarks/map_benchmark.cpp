@@ -12,7 +12,7 @@
 #include "tests/support/folders.h"
 #include "vdbmap/core/map_builder.h"
 #include "vdbmap/core/parallel.h"
-#include "vdbmap/io/point_reader.h"
+#include "vdbmap/io/points/point_reader.h"
 #include "vdbmap/io/vdb/map_file.h"
 
 namespace vdbmap::benchmarks {

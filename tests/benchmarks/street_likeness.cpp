@@ -17,8 +17,8 @@
 #include "vdbmap/core/map_builder.h"
 #include "vdbmap/core/parallel.h"
 #include "vdbmap/core/voxel_record.h"
-#include "vdbmap/io/byte_reader.h"
-#include "vdbmap/io/point_reader.h"
+#include "vdbmap/io/file/byte_reader.h"
+#include "vdbmap/io/points/point_reader.h"
 
 namespace vdbmap::benchmarks {
 namespace {

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include <registration/trajectory_error.h>
-#include <vdbmap/io/trajectory_file.h>
+#include <vdbmap/io/poses/trajectory_file.h>
 #include <vdbmap/render/image.h>
 
 int main(int, char** argv) {

@@ -6,7 +6,7 @@
 #include <string_view>
 
 #include "vdbmap/core/error.h"
-#include "vdbmap/io/byte_reader.h"
+#include "vdbmap/io/file/byte_reader.h"
 
 namespace vdbmap::test {
 

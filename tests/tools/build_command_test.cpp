@@ -7,10 +7,10 @@
 
 #include "tests/support/raw_files.h"
 #include "tests/tools/map_command.h"
-#include "vdbmap/io/kitti_bin.h"
-#include "vdbmap/io/las.h"
-#include "vdbmap/io/ply.h"
-#include "vdbmap/io/trajectory_file.h"
+#include "vdbmap/io/kitti/kitti_bin.h"
+#include "vdbmap/io/las/las.h"
+#include "vdbmap/io/ply/ply.h"
+#include "vdbmap/io/poses/trajectory_file.h"
 
 namespace vdbmap::cli {
 namespace {

@@ -8,9 +8,9 @@
 
 #include "tests/support/raw_files.h"
 #include "tests/tools/map_command.h"
-#include "vdbmap/io/kitti_bin.h"
-#include "vdbmap/io/las.h"
-#include "vdbmap/io/ply.h"
+#include "vdbmap/io/kitti/kitti_bin.h"
+#include "vdbmap/io/las/las.h"
+#include "vdbmap/io/ply/ply.h"
 
 namespace vdbmap::cli {
 namespace {

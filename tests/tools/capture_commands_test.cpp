@@ -8,8 +8,8 @@
 #include "tests/support/raw_files.h"
 #include "tests/support/vlp16_packets.h"
 #include "tests/tools/map_command.h"
-#include "vdbmap/io/trajectory_file.h"
-#include "vdbmap/io/vlp16_pcap.h"
+#include "vdbmap/io/poses/trajectory_file.h"
+#include "vdbmap/io/velodyne/vlp16_pcap.h"
 
 namespace vdbmap::cli {
 namespace {

@@ -14,7 +14,7 @@
 #include "tests/support/folders.h"
 #include "tests/support/run_command.h"
 #include "tools/cli/command.h"
-#include "vdbmap/io/trajectory_file.h"
+#include "vdbmap/io/poses/trajectory_file.h"
 
 namespace vdbmap::cli {
 namespace {

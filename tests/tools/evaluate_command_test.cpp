@@ -10,7 +10,7 @@
 #include "tests/support/raw_files.h"
 #include "tests/support/run_command.h"
 #include "tools/cli/exit_code.h"
-#include "vdbmap/io/trajectory_file.h"
+#include "vdbmap/io/poses/trajectory_file.h"
 
 namespace vdbmap::cli {
 namespace {

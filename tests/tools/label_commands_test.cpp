@@ -11,9 +11,9 @@
 #include "tests/support/picture.h"
 #include "tests/support/raw_files.h"
 #include "tests/tools/map_command.h"
-#include "vdbmap/io/label_file.h"
-#include "vdbmap/io/las.h"
-#include "vdbmap/io/point_reader.h"
+#include "vdbmap/io/kitti/label_file.h"
+#include "vdbmap/io/las/las.h"
+#include "vdbmap/io/points/point_reader.h"
 #include "vdbmap/render/label_colors.h"
 
 namespace vdbmap::cli {

@@ -11,8 +11,8 @@
 #include "tests/support/raw_files.h"
 #include "tests/support/synthetic_scene.h"
 #include "tests/tools/map_command.h"
-#include "vdbmap/io/kitti_bin.h"
-#include "vdbmap/io/trajectory_file.h"
+#include "vdbmap/io/kitti/kitti_bin.h"
+#include "vdbmap/io/poses/trajectory_file.h"
 
 namespace vdbmap::cli {
 namespace {

@@ -6,9 +6,9 @@
 #include <utility>
 
 #include "tests/support/raw_files.h"
-#include "vdbmap/io/kitti_bin.h"
-#include "vdbmap/io/ply.h"
-#include "vdbmap/io/trajectory_file.h"
+#include "vdbmap/io/kitti/kitti_bin.h"
+#include "vdbmap/io/ply/ply.h"
+#include "vdbmap/io/poses/trajectory_file.h"
 
 namespace vdbmap::cli {
 

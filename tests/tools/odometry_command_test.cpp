@@ -7,9 +7,9 @@
 #include "tests/support/raw_files.h"
 #include "tests/tools/map_command.h"
 #include "tools/cli/stop_request.h"
-#include "vdbmap/io/kitti_bin.h"
-#include "vdbmap/io/point_reader.h"
-#include "vdbmap/io/trajectory_file.h"
+#include "vdbmap/io/kitti/kitti_bin.h"
+#include "vdbmap/io/points/point_reader.h"
+#include "vdbmap/io/poses/trajectory_file.h"
 #include "vdbmap/io/vdb/map_file.h"
 
 namespace vdbmap::cli {

@@ -8,7 +8,7 @@
 #include "tests/support/picture.h"
 #include "tests/support/raw_files.h"
 #include "tests/tools/map_command.h"
-#include "vdbmap/io/trajectory_file.h"
+#include "vdbmap/io/poses/trajectory_file.h"
 #include "vdbmap/io/vdb/map_file.h"
 
 namespace vdbmap::cli {

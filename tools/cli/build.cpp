@@ -23,9 +23,9 @@
 #include "tools/cli/progress.h"
 #include "tools/cli/reading.h"
 #include "tools/cli/scan_selection.h"
-#include "vdbmap/io/geodetic_codes.h"
+#include "vdbmap/io/las/geodetic_codes.h"
 #include "vdbmap/io/map_from_files.h"
-#include "vdbmap/io/point_reader.h"
+#include "vdbmap/io/points/point_reader.h"
 
 namespace vdbmap::cli {
 namespace {

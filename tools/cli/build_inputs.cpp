@@ -11,7 +11,7 @@
 #include <spdlog/spdlog.h>
 
 #include "vdbmap/core/error.h"
-#include "vdbmap/io/trajectory_file.h"
+#include "vdbmap/io/poses/trajectory_file.h"
 
 namespace vdbmap::cli {
 namespace {

@@ -7,7 +7,7 @@
 
 #include "tools/cli/scan_selection.h"
 #include "vdbmap/io/map_from_files.h"
-#include "vdbmap/io/scan_poses.h"
+#include "vdbmap/io/scans/scan_poses.h"
 
 namespace vdbmap::cli {
 

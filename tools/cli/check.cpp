@@ -8,7 +8,7 @@
 
 #include "tools/cli/command.h"
 #include "tools/cli/output.h"
-#include "vdbmap/io/text.h"
+#include "vdbmap/io/file/text.h"
 #include "vdbmap/io/vdb/map_check.h"
 
 namespace vdbmap::cli {

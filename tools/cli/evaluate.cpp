@@ -16,7 +16,7 @@
 #include "tools/cli/reading.h"
 #include "tools/cli/scan_selection.h"
 #include "vdbmap/core/error.h"
-#include "vdbmap/io/trajectory_file.h"
+#include "vdbmap/io/poses/trajectory_file.h"
 
 namespace vdbmap::cli {
 namespace {

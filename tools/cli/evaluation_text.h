@@ -10,7 +10,7 @@
 
 #include "registration/evaluation/relative_error.h"
 #include "registration/trajectory_error.h"
-#include "vdbmap/io/trajectory_file.h"
+#include "vdbmap/io/poses/trajectory_file.h"
 
 namespace vdbmap::cli {
 

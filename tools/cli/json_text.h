@@ -6,7 +6,7 @@
 #include <Eigen/Core>
 #include <nlohmann/json.hpp>
 
-#include "vdbmap/io/scan_sequence.h"
+#include "vdbmap/io/scans/scan_sequence.h"
 
 namespace vdbmap::cli {
 

@@ -19,7 +19,7 @@
 #include "tools/cli/reading.h"
 #include "tools/cli/scan_selection.h"
 #include "vdbmap/core/error.h"
-#include "vdbmap/io/point_reader.h"
+#include "vdbmap/io/points/point_reader.h"
 #include "vdbmap/io/vdb/map_file.h"
 
 namespace vdbmap::cli {

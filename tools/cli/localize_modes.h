@@ -10,8 +10,8 @@
 #include "tools/cli/common_options.h"
 #include "tools/cli/localize_report.h"
 #include "vdbmap/core/voxel_map.h"
-#include "vdbmap/io/scan_sequence.h"
-#include "vdbmap/io/trajectory_file.h"
+#include "vdbmap/io/poses/trajectory_file.h"
+#include "vdbmap/io/scans/scan_sequence.h"
 
 namespace vdbmap::cli {
 

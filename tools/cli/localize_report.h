@@ -13,9 +13,9 @@
 #include "registration/localize.h"
 #include "registration/localizer.h"
 #include "tools/cli/reading.h"
-#include "vdbmap/io/scan_poses.h"
-#include "vdbmap/io/scan_sequence.h"
-#include "vdbmap/io/trajectory_file.h"
+#include "vdbmap/io/poses/trajectory_file.h"
+#include "vdbmap/io/scans/scan_poses.h"
+#include "vdbmap/io/scans/scan_sequence.h"
 
 namespace vdbmap::cli {
 

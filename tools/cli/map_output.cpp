@@ -8,8 +8,8 @@
 
 #include <CLI/Option.hpp>
 
-#include "vdbmap/io/atomic_file.h"
-#include "vdbmap/io/text.h"
+#include "vdbmap/io/file/atomic_file.h"
+#include "vdbmap/io/file/text.h"
 
 namespace vdbmap::cli {
 namespace {

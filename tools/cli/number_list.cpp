@@ -8,7 +8,7 @@
 #include <CLI/Error.hpp>
 #include <CLI/Option.hpp>
 
-#include "vdbmap/io/text.h"
+#include "vdbmap/io/file/text.h"
 
 namespace vdbmap::cli {
 namespace {

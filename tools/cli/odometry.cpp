@@ -25,9 +25,9 @@
 #include "tools/cli/scan_selection.h"
 #include "tools/cli/stop_request.h"
 #include "vdbmap/core/error.h"
-#include "vdbmap/io/point_reader.h"
-#include "vdbmap/io/scan_sequence.h"
-#include "vdbmap/io/trajectory_file.h"
+#include "vdbmap/io/points/point_reader.h"
+#include "vdbmap/io/poses/trajectory_file.h"
+#include "vdbmap/io/scans/scan_sequence.h"
 
 namespace vdbmap::cli {
 namespace {

@@ -10,8 +10,8 @@
 #include "tools/cli/map_output.h"
 #include "vdbmap/core/cloud_append.h"
 #include "vdbmap/core/error.h"
+#include "vdbmap/io/file/output_path.h"
 #include "vdbmap/io/map_export.h"
-#include "vdbmap/io/output_path.h"
 #include "vdbmap/io/vdb/map_file.h"
 
 namespace vdbmap::cli {

@@ -8,8 +8,8 @@
 #include <nlohmann/json.hpp>
 
 #include "vdbmap/core/error.h"
-#include "vdbmap/io/atomic_file.h"
-#include "vdbmap/io/text.h"
+#include "vdbmap/io/file/atomic_file.h"
+#include "vdbmap/io/file/text.h"
 
 namespace vdbmap::cli {
 namespace {

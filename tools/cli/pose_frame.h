@@ -4,7 +4,7 @@
 #include <CLI/App.hpp>
 #include <nlohmann/json_fwd.hpp>
 
-#include "vdbmap/io/scan_poses.h"
+#include "vdbmap/io/scans/scan_poses.h"
 
 namespace vdbmap::cli {
 

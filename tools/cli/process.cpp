@@ -19,9 +19,9 @@
 #include <unistd.h>
 
 #include "tools/cli/exit_code.h"
-#include "vdbmap/io/atomic_file.h"
-#include "vdbmap/io/atomic_folder.h"
-#include "vdbmap/io/text.h"
+#include "vdbmap/io/file/atomic_file.h"
+#include "vdbmap/io/file/atomic_folder.h"
+#include "vdbmap/io/file/text.h"
 
 namespace vdbmap::cli {
 namespace {

@@ -6,7 +6,7 @@
 
 #include "tools/cli/reading.h"
 #include "vdbmap/core/point_cloud.h"
-#include "vdbmap/io/scan_sequence.h"
+#include "vdbmap/io/scans/scan_sequence.h"
 
 namespace vdbmap::cli {
 

@@ -13,7 +13,7 @@
 #include <spdlog/fmt/fmt.h>
 #include <spdlog/spdlog.h>
 
-#include "vdbmap/io/point_fields.h"
+#include "vdbmap/io/points/point_fields.h"
 
 namespace vdbmap::cli {
 namespace {

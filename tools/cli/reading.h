@@ -7,7 +7,7 @@
 #include <CLI/App.hpp>
 #include <nlohmann/json.hpp>
 
-#include "vdbmap/io/point_reader.h"
+#include "vdbmap/io/points/point_reader.h"
 
 namespace vdbmap::cli {
 

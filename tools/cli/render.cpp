@@ -23,9 +23,9 @@
 #include "tools/cli/reading.h"
 #include "tools/cli/short_names.h"
 #include "vdbmap/core/error.h"
-#include "vdbmap/io/point_reader.h"
-#include "vdbmap/io/text.h"
-#include "vdbmap/io/trajectory_file.h"
+#include "vdbmap/io/file/text.h"
+#include "vdbmap/io/points/point_reader.h"
+#include "vdbmap/io/poses/trajectory_file.h"
 #include "vdbmap/io/vdb/map_file.h"
 
 namespace vdbmap::cli {

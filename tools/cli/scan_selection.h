@@ -8,8 +8,8 @@
 
 #include <CLI/App.hpp>
 
-#include "vdbmap/io/scan_sequence.h"
-#include "vdbmap/io/trajectory_file.h"
+#include "vdbmap/io/poses/trajectory_file.h"
+#include "vdbmap/io/scans/scan_sequence.h"
 
 namespace vdbmap::cli {
 

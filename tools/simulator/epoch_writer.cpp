@@ -13,10 +13,10 @@
 #include "tools/simulator/truth_files.h"
 #include "vdbmap/core/error.h"
 #include "vdbmap/core/parallel.h"
-#include "vdbmap/io/label_file.h"
-#include "vdbmap/io/las.h"
-#include "vdbmap/io/pcd.h"
-#include "vdbmap/io/trajectory_file.h"
+#include "vdbmap/io/kitti/label_file.h"
+#include "vdbmap/io/las/las.h"
+#include "vdbmap/io/pcd/pcd.h"
+#include "vdbmap/io/poses/trajectory_file.h"
 
 namespace vdbmap::simulator {
 namespace {

@@ -11,7 +11,7 @@
 
 #include "tools/simulator/street_json.h"
 #include "vdbmap/core/error.h"
-#include "vdbmap/io/text.h"
+#include "vdbmap/io/file/text.h"
 
 namespace vdbmap::simulator {
 namespace {

@@ -11,9 +11,9 @@
 #include "tools/simulator/output_folder.h"
 #include "tools/simulator/street_json.h"
 #include "tools/simulator/truth_files.h"
-#include "vdbmap/io/atomic_file.h"
-#include "vdbmap/io/atomic_folder.h"
-#include "vdbmap/io/text.h"
+#include "vdbmap/io/file/atomic_file.h"
+#include "vdbmap/io/file/atomic_folder.h"
+#include "vdbmap/io/file/text.h"
 
 namespace vdbmap::simulator {
 namespace {

@@ -4,7 +4,7 @@
 #include <vector>
 
 #include "vdbmap/core/point_cloud.h"
-#include "vdbmap/io/label_file.h"
+#include "vdbmap/io/kitti/label_file.h"
 
 namespace vdbmap::simulator {
 

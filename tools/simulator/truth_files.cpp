@@ -8,7 +8,7 @@
 #include <nlohmann/json.hpp>
 #include <spdlog/fmt/fmt.h>
 
-#include "vdbmap/io/atomic_file.h"
+#include "vdbmap/io/file/atomic_file.h"
 
 namespace vdbmap::simulator {
 namespace {

@@ -9,9 +9,9 @@
 #include <string>
 
 #include "vdbmap/core/srgb.h"
-#include "vdbmap/io/las.h"
-#include "vdbmap/io/ply.h"
-#include "vdbmap/io/xyz.h"
+#include "vdbmap/io/las/las.h"
+#include "vdbmap/io/ply/ply.h"
+#include "vdbmap/io/table/xyz.h"
 
 namespace vdbmap {
 namespace {

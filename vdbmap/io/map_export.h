@@ -6,7 +6,7 @@
 
 #include "vdbmap/core/point_cloud.h"
 #include "vdbmap/core/voxel_map.h"
-#include "vdbmap/io/point_format.h"
+#include "vdbmap/io/points/point_format.h"
 
 namespace vdbmap {
 

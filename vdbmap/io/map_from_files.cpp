@@ -7,8 +7,8 @@
 #include <string>
 
 #include "vdbmap/core/error.h"
-#include "vdbmap/io/label_file.h"
-#include "vdbmap/io/point_cloud_filter.h"
+#include "vdbmap/io/kitti/label_file.h"
+#include "vdbmap/io/points/point_cloud_filter.h"
 
 namespace vdbmap {
 namespace {

@@ -11,7 +11,7 @@
 
 #include "vdbmap/core/map_builder.h"
 #include "vdbmap/core/range_limits.h"
-#include "vdbmap/io/scan_sequence.h"
+#include "vdbmap/io/scans/scan_sequence.h"
 
 namespace vdbmap {
 

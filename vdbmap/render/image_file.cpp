@@ -4,7 +4,7 @@
 #include <stdexcept>
 #include <string>
 
-#include "vdbmap/io/atomic_file.h"
+#include "vdbmap/io/file/atomic_file.h"
 #include "vdbmap/render/image.h"
 #include "vdbmap/render/picture_module.h"
 

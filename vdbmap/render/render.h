@@ -6,7 +6,7 @@
 #include <vector>
 
 #include "vdbmap/core/voxel_map.h"
-#include "vdbmap/io/trajectory_file.h"
+#include "vdbmap/io/poses/trajectory_file.h"
 #include "vdbmap/render/camera_choice.h"
 #include "vdbmap/render/image.h"
 #include "vdbmap/render/voxel_colors.h"

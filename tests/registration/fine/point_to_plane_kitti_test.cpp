@@ -14,8 +14,8 @@
 #include "tests/support/random_points.h"
 #include "tests/support/sanitizers.h"
 #include "vdbmap/core/map_builder.h"
-#include "vdbmap/io/point_reader.h"
-#include "vdbmap/io/trajectory_file.h"
+#include "vdbmap/io/points/point_reader.h"
+#include "vdbmap/io/poses/trajectory_file.h"
 
 namespace vdbmap::registration {
 namespace {

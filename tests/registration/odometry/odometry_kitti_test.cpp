@@ -10,8 +10,8 @@
 #include "registration/odometry/odometry.h"
 #include "tests/support/folders.h"
 #include "tests/support/sanitizers.h"
-#include "vdbmap/io/point_reader.h"
-#include "vdbmap/io/trajectory_file.h"
+#include "vdbmap/io/points/point_reader.h"
+#include "vdbmap/io/poses/trajectory_file.h"
 
 namespace vdbmap::registration {
 namespace {

@@ -15,10 +15,10 @@
 #include "tests/support/threads.h"
 #include "tools/simulator/material.h"
 #include "vdbmap/core/error.h"
-#include "vdbmap/io/atomic_file.h"
-#include "vdbmap/io/label_file.h"
-#include "vdbmap/io/point_reader.h"
-#include "vdbmap/io/trajectory_file.h"
+#include "vdbmap/io/file/atomic_file.h"
+#include "vdbmap/io/kitti/label_file.h"
+#include "vdbmap/io/points/point_reader.h"
+#include "vdbmap/io/poses/trajectory_file.h"
 
 namespace vdbmap::simulator {
 namespace {

@@ -8,9 +8,9 @@
 #include "tests/support/sample_maps.h"
 #include "vdbmap/core/map_builder.h"
 #include "vdbmap/core/srgb.h"
-#include "vdbmap/io/las.h"
-#include "vdbmap/io/ply.h"
-#include "vdbmap/io/xyz.h"
+#include "vdbmap/io/las/las.h"
+#include "vdbmap/io/ply/ply.h"
+#include "vdbmap/io/table/xyz.h"
 
 namespace vdbmap {
 namespace {

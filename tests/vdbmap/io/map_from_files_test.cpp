@@ -8,9 +8,9 @@
 
 #include "tests/support/folders.h"
 #include "tests/support/raw_files.h"
-#include "vdbmap/io/label_file.h"
-#include "vdbmap/io/las.h"
-#include "vdbmap/io/ply.h"
+#include "vdbmap/io/kitti/label_file.h"
+#include "vdbmap/io/las/las.h"
+#include "vdbmap/io/ply/ply.h"
 
 namespace vdbmap {
 namespace {

@@ -17,7 +17,7 @@
 #include <xxhash.h>
 
 #include "vdbmap/core/error.h"
-#include "vdbmap/io/atomic_file.h"
+#include "vdbmap/io/file/atomic_file.h"
 #include "vdbmap/io/vdb/vdb_outline.h"
 
 namespace vdbmap {
