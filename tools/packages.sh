@@ -12,6 +12,8 @@ build_packages=(
 test_packages=(libgmock-dev libgtest-dev libpng-dev)
 benchmark_packages=(jq libbenchmark-dev time)
 ci_packages=(blender clang-format python3-numpy python3-openvdb)
+# The compiler of the presets with sanitizers.
+sanitizer_packages=(clang libclang-rt-14-dev)
 
 is_installed() {
   [[ $(dpkg-query --show --showformat='${db:Status-Status}' "$1" 2>/dev/null) == installed ]]

@@ -23,8 +23,7 @@ std::vector<double> cuts(double first, double last, const std::vector<WallPatch>
   std::vector<double> values = {first, last};
   for (const WallPatch& hole : holes) values.insert(values.end(), {hole.*low, hole.*high});
   std::ranges::sort(values);
-  const auto repeated = std::ranges::unique(values);
-  values.erase(repeated.begin(), repeated.end());
+  values.erase(std::unique(values.begin(), values.end()), values.end());
   return values;
 }
 

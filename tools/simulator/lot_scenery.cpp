@@ -19,7 +19,6 @@ class LotPainter {
              std::vector<Tree>& trees)
       : world_(world),
         mesh_(mesh),
-        layout_(layout),
         side_(side),
         lot_(lot),
         trees_(trees),
@@ -139,7 +138,6 @@ class LotPainter {
 
   World& world_;
   Mesh& mesh_;
-  const StreetLayout& layout_;
   const SideLayout& side_;
   const Lot& lot_;
   std::vector<Tree>& trees_;

@@ -21,13 +21,15 @@ bool reaches_most(const Eigen::Vector3d& anchor, const PointCloud& cloud, const 
   Eigen::Isometry3d local_from_cloud = map_from_cloud;
   local_from_cloud.translation() -= anchor;
   const CellFinder cells(local_from_cloud, voxels_per_metre);
+  const std::size_t most = cloud.size() / 2 + 1;
   std::atomic<std::size_t> num_reached{0};
   parallel_ranges(cloud.size(), kGrain, [&](std::size_t begin, std::size_t end) {
+    if (num_reached >= most) return;
     std::size_t count = 0;
-    for (std::size_t i = begin; i < end; ++i) count += cells.find(cloud.positions[i]) ? 1 : 0;
+    for (std::size_t i = begin; i < end; ++i) count += cells.reaches(cloud.positions[i]) ? 1 : 0;
     num_reached += count;
   });
-  return num_reached > cloud.size() / 2;
+  return num_reached >= most;
 }
 
 // Of the points that are finite, of which there is one at least.

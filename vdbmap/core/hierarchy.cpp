@@ -69,14 +69,15 @@ ParentSums sums_of_child(const VoxelLevel& fine, std::size_t number, const Voxel
   return sums;
 }
 
-// Calls body(child, number) for the voxels of a leaf that a parent covers, in the order of the records.
-template <typename Body>
-void for_each_child(const VoxelLeaf& leaf, const VoxelIndex& parent, std::int32_t factor, const Body& body) {
+// The voxels of a leaf that a parent covers, if they are occupied: the first and the last of the box.
+struct ChildBox {
+  VoxelIndex low, high;
+};
+
+ChildBox box_of_children(const VoxelLeaf& leaf, const VoxelIndex& parent, std::int32_t factor) {
   const VoxelIndex first = first_child_of_voxel(parent, factor);
-  const VoxelIndex low = VoxelIndex::maxComponent(first, leaf.origin());
-  const VoxelIndex high =
-      VoxelIndex::minComponent(first.offsetBy(factor - 1), leaf.origin().offsetBy(VoxelLeaf::DIM - 1));
-  for_each_voxel_in(leaf, low, high, body);
+  return {VoxelIndex::maxComponent(first, leaf.origin()),
+          VoxelIndex::minComponent(first.offsetBy(factor - 1), leaf.origin().offsetBy(VoxelLeaf::DIM - 1))};
 }
 
 void list_parts_of_leaf(const VoxelLevel& fine, std::uint32_t leaf_number, std::int32_t factor,
@@ -85,9 +86,8 @@ void list_parts_of_leaf(const VoxelLevel& fine, std::uint32_t leaf_number, std::
   const VoxelIndex low = parent_of_voxel(leaf.origin(), factor);
   const VoxelIndex high = parent_of_voxel(leaf.origin().offsetBy(VoxelLeaf::DIM - 1), factor);
   for (auto parent = openvdb::CoordBBox(low, high).beginXYZ(); parent; ++parent) {
-    bool is_occupied = false;
-    for_each_child(leaf, *parent, factor, [&](const VoxelIndex&, std::size_t) { is_occupied = true; });
-    if (is_occupied) parts.push_back({key_of_voxel(*parent), leaf_number});
+    const ChildBox box = box_of_children(leaf, *parent, factor);
+    if (has_voxel_in(leaf, box.low, box.high)) parts.push_back({key_of_voxel(*parent), leaf_number});
   }
 }
 
@@ -126,7 +126,9 @@ ParentSums sums_of_parts(const VoxelLevel& fine, std::span<const PartOfParent> p
   ParentSums total;
   for (const PartOfParent& part : parts) {
     ParentSums sums;
-    for_each_child(fine.leaves()[part.leaf], parent, factor, [&](const VoxelIndex& child, std::size_t number) {
+    const VoxelLeaf& leaf = fine.leaves()[part.leaf];
+    const ChildBox box = box_of_children(leaf, parent, factor);
+    for_each_voxel_in(leaf, box.low, box.high, [&](const VoxelIndex& child, std::size_t number) {
       sums.add(sums_of_child(fine, number, child, center));
     });
     total.add(sums);

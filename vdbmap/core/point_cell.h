@@ -26,13 +26,26 @@ class CellFinder {
 
   /// The cell of a point of the cloud; nothing where its index does not have 21 bits, or it is not finite.
   std::optional<PointCell> find(const Eigen::Vector3d& point) const {
-    const Eigen::Vector3d scaled = rotation_ * point + translation_;  // voxels have edge 1
+    const Eigen::Vector3d scaled = scale(point);
     if (!is_addressable(scaled, 1.0)) return std::nullopt;
-    const VoxelIndex voxel = voxel_of_point(scaled, 1.0);
-    return PointCell{voxel, scaled.array() - Eigen::Array3d(voxel.x(), voxel.y(), voxel.z())};
+    return cell_at(scaled);
   }
 
+  /// The same of a point that has a cell.
+  PointCell of_reached(const Eigen::Vector3d& point) const { return cell_at(scale(point)); }
+
+  /// Whether the point has a cell.
+  bool reaches(const Eigen::Vector3d& point) const { return is_addressable(scale(point), 1.0); }
+
  private:
+  // To where voxels have edge 1.
+  Eigen::Vector3d scale(const Eigen::Vector3d& point) const { return rotation_ * point + translation_; }
+
+  static PointCell cell_at(const Eigen::Vector3d& scaled) {
+    const VoxelIndex voxel = voxel_of_point(scaled, 1.0);
+    return {voxel, scaled.array() - Eigen::Array3d(voxel.x(), voxel.y(), voxel.z())};
+  }
+
   Eigen::Matrix3d rotation_;
   Eigen::Vector3d translation_;
 };

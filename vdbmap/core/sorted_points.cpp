@@ -189,7 +189,7 @@ SortedPoints::SortedPoints(const PointCloud& cloud, std::size_t begin, std::size
       const std::size_t source = i * kRangeSize + j;
       if (block_in_range[source] == kNowhere) continue;
       points_[ranges[i].targets[block_in_range[source]]++] =
-          keyed_point(*cells.find(range[j]), static_cast<std::uint32_t>(source));
+          keyed_point(cells.of_reached(range[j]), static_cast<std::uint32_t>(source));
     }
   });
   sort_voxels();

@@ -89,23 +89,37 @@ inline std::size_t count_in_layer(const VoxelLeaf& leaf, int x) {
       std::popcount(leaf.getValueMask().getWord<openvdb::Index64>(static_cast<openvdb::Index>(x))));
 }
 
+/// The bits of each layer x of a leaf that lie from `low` to `high` on the axes y and z, both included and both in the
+/// leaf: bit 8 y + z.
+inline std::uint64_t box_in_layer(const VoxelIndex& low, const VoxelIndex& high) {
+  const std::uint64_t row = ((2u << (high.z() & 7)) - 1) & ~((1u << (low.z() & 7)) - 1);
+  const std::uint64_t rows = ~std::uint64_t{0} >> (56 - 8 * (high.y() & 7)) & ~std::uint64_t{0} << (8 * (low.y() & 7));
+  return row * 0x0101010101010101u & rows;
+}
+
+/// Whether any voxel of the leaf is occupied from `low` to `high`, both included and both in the leaf.
+inline bool has_voxel_in(const VoxelLeaf& leaf, const VoxelIndex& low, const VoxelIndex& high) {
+  std::uint64_t bits = 0;
+  for (int x = low.x() & 7; x <= (high.x() & 7); ++x) {
+    bits |= leaf.getValueMask().getWord<openvdb::Index64>(static_cast<openvdb::Index>(x));
+  }
+  return (bits & box_in_layer(low, high)) != 0;
+}
+
 /// Calls body(voxel, record_number) for the voxels of the leaf from `low` to `high`, both included and both in the
-/// leaf, in the order of the records: whole rows of the bit mask at once.
+/// leaf, in the order of the records.
 template <typename Body>
 void for_each_voxel_in(const VoxelLeaf& leaf, const VoxelIndex& low, const VoxelIndex& high, const Body& body) {
-  const std::uint64_t row_bits = ((2u << (high.z() & 7)) - 1) & ~((1u << (low.z() & 7)) - 1);
+  const std::uint64_t box = box_in_layer(low, high);
   const int first_layer = low.x() & 7;
   std::size_t first_of_layer = leaf.transientData();
   for (int i = 0; i < first_layer; ++i) first_of_layer += count_in_layer(leaf, i);
   for (std::int32_t x = low.x(); x <= high.x(); ++x) {
     const auto layer = leaf.getValueMask().getWord<openvdb::Index64>(static_cast<openvdb::Index>(x & 7));
-    for (std::int32_t y = low.y(); y <= high.y() && layer != 0; ++y) {
-      std::uint64_t row = layer & row_bits << (8 * (y & 7));
-      for (; row != 0; row &= row - 1) {
-        const int bit = std::countr_zero(row);
-        const auto rank = static_cast<std::size_t>(std::popcount(layer & ((std::uint64_t{1} << bit) - 1)));
-        body(VoxelIndex(x, y, (low.z() & ~7) | (bit & 7)), first_of_layer + rank);
-      }
+    for (std::uint64_t inside = layer & box; inside != 0; inside &= inside - 1) {
+      const int bit = std::countr_zero(inside);
+      const auto rank = static_cast<std::size_t>(std::popcount(layer & ((std::uint64_t{1} << bit) - 1)));
+      body(VoxelIndex(x, (low.y() & ~7) | bit >> 3, (low.z() & ~7) | (bit & 7)), first_of_layer + rank);
     }
     first_of_layer += static_cast<std::size_t>(std::popcount(layer));
   }

@@ -1,13 +1,10 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include <algorithm>
-#include <cerrno>
 #include <cmath>
 #include <cstddef>
 #include <cstdint>
-#include <fstream>
 #include <limits>
 #include <span>
-#include <sstream>
 #include <string>
 #include <string_view>
 #include <tuple>
@@ -16,6 +13,7 @@
 #include <Eigen/SVD>
 
 #include "vdbmap/core/error.h"
+#include "vdbmap/io/file/line_reader.h"
 #include "vdbmap/io/file/text.h"
 #include "vdbmap/io/poses/pose_layout.h"
 #include "vdbmap/io/poses/trajectory_file.h"
@@ -99,13 +97,13 @@ class TrajectoryReader {
  public:
   explicit TrajectoryReader(const std::filesystem::path& path) : path_(path) {}
 
-  void take_line(const std::string& line) {
+  void take_line(std::string_view line) {
     ++line_;
     const std::size_t begin = line.find_first_not_of(" \t\v\f");
-    if (begin == std::string::npos) return;
+    if (begin == std::string_view::npos) return;
     for (const std::string_view mark : {"#", "%", "//"}) {
-      if (!std::string_view(line).substr(begin).starts_with(mark)) continue;
-      if (!layout_) comments_.push_back(line.substr(begin + mark.size()));
+      if (!line.substr(begin).starts_with(mark)) continue;
+      if (!layout_) comments_.emplace_back(line.substr(begin + mark.size()));
       return;
     }
     const char separator = layout_ ? separator_ : pose_separator(line);
@@ -135,7 +133,7 @@ class TrajectoryReader {
            std::any_of(fields.begin(), fields.end(), [](std::string_view field) { return !field.empty(); });
   }
 
-  void take_header(const std::string& line) {
+  void take_header(std::string_view line) {
     if (!header_.empty()) refuse_header();
     header_ = line;
     header_line_ = line_;
@@ -226,31 +224,12 @@ class TrajectoryReader {
   Trajectory trajectory_;
 };
 
-// Of text that other systems wrote: a byte order mark, and line ends of the old Macintosh.
-void take_lines(std::ifstream& file, const std::filesystem::path& path, TrajectoryReader& reader) {
-  constexpr std::string_view kUtf8Mark = "\xEF\xBB\xBF";
-  std::string text;
-  for (bool is_first = true; std::getline(file, text); is_first = false) {
-    if (is_first && text.starts_with(kUtf8Mark)) text.erase(0, kUtf8Mark.size());
-    if (is_first && (text.starts_with("\xFF\xFE") || text.starts_with("\xFE\xFF"))) {
-      throw IoError::malformed(path, "is text in UTF-16, expected UTF-8");
-    }
-    if (text.ends_with('\r')) text.pop_back();
-    std::istringstream lines(text);
-    std::string line;
-    if (text.empty()) reader.take_line(text);
-    while (std::getline(lines, line, '\r')) reader.take_line(line);
-  }
-}
-
 }  // namespace
 
 Trajectory read_trajectory(const std::filesystem::path& path) {
-  std::ifstream file(path);
-  if (!file) throw IoError::system(path, "cannot open", errno);
+  LineReader lines(path);
   TrajectoryReader reader(path);
-  take_lines(file, path, reader);
-  if (file.bad()) throw IoError::system(path, "cannot read", errno);
+  while (const auto line = lines.next()) reader.take_line(*line);
   return reader.finish();
 }
 

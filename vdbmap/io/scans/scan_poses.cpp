@@ -1,10 +1,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "vdbmap/io/scans/scan_poses.h"
 
-#include <cerrno>
 #include <cmath>
 #include <cstdint>
-#include <fstream>
 #include <string>
 #include <string_view>
 #include <system_error>
@@ -12,6 +10,7 @@
 #include <vector>
 
 #include "vdbmap/core/error.h"
+#include "vdbmap/io/file/line_reader.h"
 #include "vdbmap/io/file/text.h"
 
 namespace vdbmap {
@@ -89,16 +88,15 @@ bool lies_level(const PointCloud& scan) {
 }
 
 Eigen::Isometry3d read_camera_from_lidar(const std::filesystem::path& calibration) {
-  std::ifstream file(calibration);
-  if (!file) throw IoError::system(calibration, "cannot open", errno);
-  std::string line;
-  for (std::uint64_t number = 1; std::getline(file, line); ++number) {
-    const std::vector<std::string_view> words = split_words(line);
+  LineReader lines(calibration);
+  while (const auto line = lines.next()) {
+    const std::vector<std::string_view> words = split_words(*line);
     if (words.empty()) continue;
     const std::string_view name = words.front();
     if (name != "Tr:" && name != "Tr_velo_to_cam:" && name != "Tr_velo_cam:" && name != "Tr") continue;
     if (const auto motion = rigid_motion(std::span(words).subspan(1))) return *motion;
-    throw IoError::malformed_at_line(calibration, number, std::string(name) + " is no rigid motion of 12 numbers");
+    throw IoError::malformed_at_line(calibration, lines.number(),
+                                     std::string(name) + " is no rigid motion of 12 numbers");
   }
   throw IoError::malformed(calibration, "has no line 'Tr:' with the pose of the LiDAR in the camera's frame");
 }

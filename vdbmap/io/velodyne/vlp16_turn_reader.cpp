@@ -106,7 +106,7 @@ bool Vlp16TurnReader::read_packet() {
 
 void Vlp16TurnReader::hold(VelodynePayload payload) {
   decode_held(velodyne_timestamp_us(payload));
-  held_.emplace().number = capture_.packet_number();
+  held_ = HeldPacket{{}, capture_.packet_number()};
   std::ranges::copy(payload, held_->payload.begin());
 }
 

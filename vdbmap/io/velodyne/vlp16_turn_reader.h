@@ -19,6 +19,12 @@
 
 namespace vdbmap {
 
+/// A packet of a capture that waits for the next one.
+struct HeldPacket {
+  std::array<std::uint8_t, kVelodynePacketSize> payload{};
+  std::uint64_t number = 0;  ///< of the packet in the file
+};
+
 /// The turns of a Velodyne capture one after the other, as vlp16_pcap.h describes them; only the current one is in
 /// memory.
 class Vlp16TurnReader {
@@ -46,11 +52,6 @@ class Vlp16TurnReader {
   };
 
   // The packet read last, whose time stamp the next one tells to be right.
-  struct HeldPacket {
-    std::array<std::uint8_t, kVelodynePacketSize> payload{};
-    std::uint64_t number = 0;
-  };
-
   bool read_packet();
   void hold(VelodynePayload payload);
   void decode_held(std::optional<std::uint32_t> next_time_us);
