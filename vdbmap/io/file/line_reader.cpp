@@ -10,13 +10,13 @@ namespace vdbmap {
 namespace {
 
 constexpr int kEnd = -1;
-constexpr std::size_t kBufferSize = std::size_t{1} << 16;  // [bytes]
+constexpr std::size_t kReadSize = std::size_t{1} << 16;  // [bytes]
 
 }  // namespace
 
 LineReader::LineReader(std::filesystem::path path) : path_(std::move(path)), file_(path_, std::ios::binary) {
   if (!file_) throw IoError::system(path_, "cannot open", errno);
-  buffer_.resize(kBufferSize);
+  buffer_.resize(kReadSize);
 }
 
 // The next byte, or kEnd. The stream would take memory that is refused inside of it for the end of the file: so it

@@ -14,7 +14,7 @@ namespace vdbmap {
 namespace {
 
 std::vector<std::string> lines_of(const std::string& bytes) {
-  const TemporaryFolder folder;
+  const test::TemporaryFolder folder;
   std::ofstream(folder.path() / "lines.txt", std::ios::binary) << bytes;
   LineReader reader(folder.path() / "lines.txt");
   std::vector<std::string> lines;
@@ -60,7 +60,7 @@ TEST(LineReader, WhatNeverEndsIsRefused) {
 }
 
 TEST(LineReader, FoldersMissingFilesAndOtherEncodingsAreRefused) {
-  const TemporaryFolder folder;
+  const test::TemporaryFolder folder;
   std::ofstream(folder.path() / "wide.txt", std::ios::binary) << "\xFF\xFE"
                                                               << "a";
   EXPECT_NE(refusal_of(folder.path()).find("cannot read: Is a directory"), std::string::npos);
