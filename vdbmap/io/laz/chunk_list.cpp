@@ -101,9 +101,11 @@ std::optional<Chunk> next_pointwise_chunk(const ByteReader& file, std::uint64_t 
 FoundChunks chunks_one_by_one(const ByteReader& file, const LasHeader& header, const LaszipRecord& laszip,
                               std::uint64_t end) {
   FoundChunks found;
-  found.findings.push_back({"the table of the LAZ chunks is missing or damaged: they are searched one after the other",
-                            0, "byte " + std::to_string(header.points_offset), true});
   const bool says_where_they_end = laszip.is_layered || laszip.has_fixed_chunks;
+  found.findings.push_back(
+      {std::string("the table of the LAZ chunks is missing or damaged") +
+           (says_where_they_end ? ": they are searched one after the other" : ", and nothing else says where they end"),
+       0, "byte " + std::to_string(header.points_offset), true});
   const std::uint64_t highest = highest_number(header);
   std::uint64_t at = header.points_offset + kTableOffsetSize;
   while (says_where_they_end && at < end && found.most < highest) {

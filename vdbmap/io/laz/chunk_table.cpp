@@ -14,7 +14,9 @@ struct Place {
   std::uint64_t begin = 0;
   std::uint64_t table = 0;
 
-  bool is_possible(std::string_view bytes) const { return table >= begin && table + kFrontSize <= bytes.size(); }
+  bool is_possible(std::string_view bytes) const {
+    return table >= begin && table <= bytes.size() && bytes.size() - table >= kFrontSize;
+  }
 };
 
 // Writers that cannot go back to the front of the points say it in the last 8 bytes of the file.

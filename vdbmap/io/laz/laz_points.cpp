@@ -5,6 +5,7 @@
 #include <string>
 #include <utility>
 
+#include "vdbmap/core/error.h"
 #include "vdbmap/core/parallel.h"
 #include "vdbmap/io/laz/chunk_decoder.h"
 #include "vdbmap/io/laz/chunk_list.h"
@@ -101,6 +102,11 @@ std::vector<Outcome> decode_chunks(const Source& source, const std::vector<Chunk
   return outcomes;
 }
 
+void refuse_without_points(const ByteReader& file, const LasPoints& points) {
+  if (!points.cloud.empty() || points.findings.empty()) return;
+  throw IoError::malformed(file.path(), "no point can be read: " + points.findings.front().text());
+}
+
 std::vector<std::size_t> first_points_of(const std::vector<Chunk>& chunks) {
   std::vector<std::size_t> first_points;
   std::size_t sum = 0;
@@ -136,6 +142,7 @@ LasPoints read_laz_points(const ByteReader& file, const LasHeader& header, const
          "chunk " + std::to_string(i + 1) + " at byte " + std::to_string(chunk.begin) + " " + outcomes[i].fault, true});
   }
   remove_points(points.cloud, points.lost);
+  refuse_without_points(file, points);
   finish_las_cloud(points.cloud);
   return points;
 }

@@ -40,11 +40,7 @@ class SymbolModel {
   /// The symbol whose range holds `share`; what lies beyond all ranges belongs to the last symbol.
   unsigned find(std::uint32_t share) const {
     unsigned symbol = kIsSmall ? 0 : buckets_[share >> shift_];
-    unsigned num_passed = 0;
-    do {
-      num_passed = count_up_to(starts_.data() + symbol + 1, share);
-      symbol += num_passed;
-    } while (!kIsSmall && num_passed == kStep);
+    while (starts_[symbol + 1] <= share) ++symbol;
     return symbol;
   }
 
@@ -54,17 +50,10 @@ class SymbolModel {
   }
 
  private:
-  static constexpr unsigned kStep = 16;  // starts that are compared at once
-  static constexpr bool kIsSmall = kCapacity <= kStep + 1;
-  static constexpr std::uint16_t kBeyond = 0xffff;  // above every share, the largest of which is 2^15 + 64
+  static_assert(kShareBits - bucket_bits(kCapacity) > 6);
+  static constexpr bool kIsSmall = kCapacity <= 16;  // fewer symbols than are worth buckets
+  static constexpr std::uint16_t kBeyond = 0xffff;   // above every share, the largest of which is 2^15 + 64
   static constexpr std::uint32_t kMostCounts = 1 << kShareBits;
-
-  // How many of the next starts, which rise, are not above the share. Without a branch: it could not be predicted.
-  static unsigned count_up_to(const std::uint16_t* starts, std::uint32_t share) {
-    std::uint16_t result = 0;
-    for (unsigned i = 0; i < kStep; ++i) result = static_cast<std::uint16_t>(result + (starts[i] <= share ? 1 : 0));
-    return result;
-  }
 
   void halve_counts() {
     num_counted_ = 0;
@@ -89,7 +78,8 @@ class SymbolModel {
     until_update_ = cycle_;
   }
 
-  // For each bucket of shares the symbol at its begin.
+  // For each bucket of shares the symbol at its begin. Buckets are no narrower than the 64 that shares exceed 2^15 by,
+  // so that one more is enough.
   void fill_buckets() {
     unsigned bucket = 0;
     for (unsigned i = 1; i < num_symbols_; ++i) {
@@ -104,7 +94,7 @@ class SymbolModel {
   std::uint32_t cycle_;
   std::uint32_t until_update_ = 0;
   std::uint32_t num_counted_ = 0;
-  std::array<std::uint16_t, kCapacity + kStep + 1> starts_;
+  std::array<std::uint16_t, kCapacity + 1> starts_;
   std::array<std::uint16_t, kCapacity> counts_;
   std::array<std::uint16_t, kIsSmall ? 1 : (1U << bucket_bits(kCapacity)) + 1> buckets_;
 };
