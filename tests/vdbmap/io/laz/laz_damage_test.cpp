@@ -9,6 +9,7 @@
 #include "tests/support/folders.h"
 #include "tests/support/laz_bytes.h"
 #include "tests/support/raw_files.h"
+#include "tests/support/sanitizers.h"
 #include "vdbmap/io/las.h"
 
 namespace vdbmap {
@@ -100,6 +101,7 @@ TEST_P(LazDamage, EveryFlippedByteIsAnErrorOrTheHeadersNumberOfPoints) {
   std::size_t num_refused = 0;
   for (std::size_t at = 0; at < whole.size(); ++at) {
     for (const unsigned flip : {0xffU, 0x01U, 0x80U}) {
+      if (test::kIsSanitized && flip != (at % 2 == 0 ? 0xffU : 0x01U)) continue;
       std::string laz = whole;
       laz[at] = static_cast<char>(static_cast<unsigned char>(laz[at]) ^ flip);
       const std::optional<std::size_t> num_points = num_accounted(laz);

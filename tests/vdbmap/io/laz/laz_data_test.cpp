@@ -53,7 +53,7 @@ class LazData : public testing::Test {
     const ReadResult read = read_las(file);
     EXPECT_TRUE(read.findings.empty()) << file << ": " << read.findings.at(0).text();
     BuildOptions options;
-    options.voxel_sizes = {1, 10};
+    options.voxel_sizes = {1, 8};
     options.epsg = read.epsg;
     const auto map = folder_ / "map.vdb";
     std::filesystem::remove(map);
