@@ -30,7 +30,9 @@ build_all() {
   install_missing "${build_packages[@]}" "${test_packages[@]}" "${benchmark_packages[@]}"
   cmake --preset release -B "$build" -D VDBMAP_BUILD_BENCHMARKS=ON
   cmake --build "$build" \
-    --target vdbmap_command map_benchmark fine_benchmark odometry_benchmark coarse_benchmark render_benchmark
+    --target vdbmap_command map_benchmark fine_benchmark odometry_benchmark coarse_benchmark render_benchmark \
+    laz_benchmark
+  npm ci --prefix tests/exchange --no-audit --no-fund
 }
 
 # Interleaving spreads other programs' work over all rows, so that their ratios hold on a busy machine.
@@ -149,6 +151,19 @@ tabulate_coarse() {
   done
 }
 
+tabulate_laz() {
+  local kind threads
+  for kind in pointwise layered; do
+    if [[ -z $(median laz_benchmark "read_laz/$kind/threads:1") ]]; then continue; fi
+    for threads in 1 2; do
+      row "read LAZ, 2.2 M points, $kind, $threads threads" \
+        "$(median_text laz_benchmark "read_laz/$kind/threads:$threads" million_points_per_s 2 ' M/s')"
+    done
+    row "  laz-perf in Node.js, 1 thread, decoding alone" \
+      "$(median_text laz_benchmark "laz_perf/$kind" million_points_per_s 2 ' M/s')"
+  done
+}
+
 # Odd scans in the map of the even ones, each from the pose of the scan before.
 measure_accuracy() {
   awk 'NR % 2 == 0 { print before } { before = $0 }' "$data/poses.txt" > "$results/guesses.txt"
@@ -240,6 +255,7 @@ run_benchmark fine_benchmark
 run_benchmark odometry_benchmark
 run_benchmark coarse_benchmark
 run_benchmark render_benchmark
+run_benchmark laz_benchmark
 if [[ -z $(median map_benchmark open3d_voxel_down_sample/street) ]]; then
   skip "Open3D not found (apt-get install libopen3d-dev): no peers"
 fi
@@ -249,6 +265,7 @@ tabulate_fine
 tabulate_odometry
 tabulate_coarse
 tabulate_pictures
+tabulate_laz
 measure_commands
 if [[ -n $data ]]; then
   measure_accuracy

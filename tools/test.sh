@@ -1,6 +1,6 @@
 #!/usr/bin/env bash
 # SPDX-License-Identifier: GPL-3.0-or-later
-# tools/test.sh [PRESET]: installs the Debian packages that are missing, builds vdbmap and runs its tests. PRESET of CMakePresets.json, by default
+# tools/test.sh [PRESET]: installs the Debian and npm packages that are missing, builds vdbmap and runs its tests. PRESET of CMakePresets.json, by default
 # release; results in build/PRESET/tests.xml and test_results/.
 set -euo pipefail
 cd "$(dirname "${BASH_SOURCE[0]}")/.."
@@ -10,6 +10,7 @@ preset=${1:-release}
 build=build/$preset
 
 install_missing "${build_packages[@]}" "${test_packages[@]}"
+npm ci --prefix tests/exchange --no-audit --no-fund
 cmake --preset "$preset"
 cmake --build --preset "$preset"
 rm -rf "$build/test_results" "$build/tests.xml"

@@ -5,13 +5,14 @@
 #include <bit>
 
 namespace vdbmap::test {
-namespace {
 
 void put(std::string& bytes, std::uint64_t value, int size) {
   for (int i = 0; i < size; ++i) bytes += static_cast<char>(value >> 8 * i & 0xff);
 }
 
 void put(std::string& bytes, double value) { put(bytes, std::bit_cast<std::uint64_t>(value), 8); }
+
+namespace {
 
 void put_padded(std::string& bytes, std::string text, std::size_t size) {
   text.resize(size);

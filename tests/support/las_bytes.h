@@ -9,6 +9,10 @@
 
 namespace vdbmap::test {
 
+/// Appends a number of `size` bytes, little endian; a double takes 8.
+void put(std::string& bytes, std::uint64_t value, int size);
+void put(std::string& bytes, double value);
+
 /// A point as a LAS file stores it.
 struct LasPoint {
   std::int32_t x = 0;

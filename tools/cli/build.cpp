@@ -98,7 +98,7 @@ void add_range_options(CLI::App& app, BuildCommandOptions& options, CLI::Option*
 
 void add_options(CLI::App& app, BuildCommandOptions& options) {
   app.add_option("INPUTS", options.inputs,
-                 "Point files, and folders of them: PLY, PCD, LAS, KITTI .bin, XYZ/CSV, .pcap")
+                 "Point files, and folders of them: PLY, PCD, LAS, LAZ, KITTI .bin, XYZ/CSV, .pcap")
       ->type_name("PATH")
       ->required();
   CLI::Option* poses = app.add_option("--poses", options.poses,

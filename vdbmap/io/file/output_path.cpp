@@ -74,7 +74,7 @@ std::filesystem::file_status status_of_target(const std::filesystem::path& targe
 
 std::filesystem::path temporary_name_beside(const std::filesystem::path& target) {
   const std::filesystem::path folder = target.parent_path();
-  const std::string ending = '.' + random_letters();
+  const std::string ending = std::string(1, '.').append(random_letters());
   const std::size_t longest = longest_name(folder);
   const std::size_t left = longest > ending.size() ? longest - ending.size() : 0;
   return folder / (shortened(target.filename().string(), left) + ending);

@@ -107,10 +107,13 @@ void read_sections(ByteReader& file, LasHeader& header) {
 }
 
 void read_point_format(ByteReader& file, LasHeader& header) {
-  const auto format = read_at<std::uint8_t>(file, kFormatAt);
-  if ((format & kCompressionBits) != 0) {
-    fail_at(file, kFormatAt, "LAZ compression is not supported: decompress the file first (laszip, pdal translate)");
+  const auto stored = read_at<std::uint8_t>(file, kFormatAt);
+  if ((stored & kCompressionBits) == kCompressionBits) {
+    fail_at(file, kFormatAt, "compressed by a program older than LASzip, which nothing reads any more");
   }
+  const unsigned format = stored & ~kCompressionBits & 0xffU;
+  header.is_compressed = (stored & kCompressionBits) != 0;
+  header.format_number = format;
   const auto layout = find_las_point_format(format);
   if (!layout) fail_at(file, kFormatAt, "point format " + std::to_string(format) + ", expected 0 to 10");
   header.format = *layout;

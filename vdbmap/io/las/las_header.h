@@ -45,6 +45,8 @@ struct LasHeader {
   std::uint64_t waveforms_offset = 0;  ///< [bytes] from the front of the file; 0: none in it
   std::uint64_t extended_offset = 0;   ///< [bytes] from the front of the file
   std::uint64_t num_extended_records = 0;
+  unsigned format_number = 0;  ///< of the points' format, 0 to 10
+  bool is_compressed = false;  ///< LAZ: the points are not stored as the format says
   LasPointFormat format;
   std::uint64_t record_length = 0;      ///< [bytes] of a point
   std::uint64_t num_points = 0;         ///< as the header says, true or not; 0 or kUnknownLasCount: unknown
@@ -54,7 +56,7 @@ struct LasHeader {
   std::vector<ReadFinding> findings;  ///< what is not true in it, apart from the number of points
 };
 
-/// Reads the header of LAS 1.0 to 1.4. Throws IoError where points cannot be read by it, for compressed points too.
+/// Reads the header of LAS 1.0 to 1.4. Throws IoError where points cannot be read by it.
 LasHeader read_las_header(ByteReader& file);
 
 }  // namespace vdbmap

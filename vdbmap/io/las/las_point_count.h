@@ -14,8 +14,18 @@ struct LasPointCount {
   std::vector<ReadFinding> findings;
 };
 
-/// The number in the header where the file holds as many; what it holds where it ends too early or where the header
-/// gives no number, as writers leave it that did not come to their end.
+/// How many points a file has room for.
+struct LasHeldPoints {
+  std::uint64_t least = 0;
+  std::uint64_t most = 0;              ///< more than `least` where the end of the points does not say how many they are
+  bool may_be_something_else = false;  ///< what follows the header's number of points need not be points
+};
+
+/// The number in the header where the file holds as many; what it holds at most where it ends too early; what it holds
+/// for sure where the header gives no number, as writers leave it that did not come to their end.
+LasPointCount choose_las_point_count(const LasHeader& header, const LasHeldPoints& held);
+
+/// The same for points that are not compressed: those that are whole in the file.
 LasPointCount count_las_points(const ByteReader& file, const LasHeader& header, const LasRecords& records);
 
 }  // namespace vdbmap

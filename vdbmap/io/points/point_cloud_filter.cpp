@@ -36,15 +36,6 @@ void remove_at(std::vector<T>& values, std::span<const std::size_t> places) {
   values.resize(kept);
 }
 
-void remove_points(PointCloud& cloud, std::span<const std::size_t> places) {
-  remove_at(cloud.positions, places);
-  remove_at(cloud.colors, places);
-  remove_at(cloud.intensities, places);
-  remove_at(cloud.times, places);
-  remove_at(cloud.rings, places);
-  remove_at(cloud.labels, places);
-}
-
 // Places among all, from places among those that are left without the dropped ones; both rise.
 std::vector<std::size_t> places_among_all(std::span<const std::size_t> places, std::span<const std::size_t> dropped) {
   std::vector<std::size_t> result;
@@ -64,6 +55,15 @@ void add_dropped(ReadResult& read, std::span<const std::size_t> places) {
 }
 
 }  // namespace
+
+void remove_points(PointCloud& cloud, std::span<const std::size_t> places) {
+  remove_at(cloud.positions, places);
+  remove_at(cloud.colors, places);
+  remove_at(cloud.intensities, places);
+  remove_at(cloud.times, places);
+  remove_at(cloud.rings, places);
+  remove_at(cloud.labels, places);
+}
 
 std::vector<std::size_t> drop_non_finite(PointCloud& cloud) {
   std::vector<std::size_t> dropped =

@@ -15,6 +15,9 @@ namespace vdbmap {
 std::vector<std::size_t> drop_non_finite(PointCloud& cloud);
 
 /// Removes the points at these places of the cloud, which rise, with their attributes.
+void remove_points(PointCloud& cloud, std::span<const std::size_t> places);
+
+/// As above, and keeps their places in the file.
 void drop_points(ReadResult& read, std::span<const std::size_t> places);
 
 /// As above, and notes why where there are any.

@@ -36,7 +36,7 @@ struct ReadResult {
   double metres_per_unit = 1.0;  ///< length of the file's unit, where the file says so (a LAS file in feet: 0.3048)
 };
 
-/// Reads a PLY, PCD, LAS, KITTI .bin, XYZ/CSV or VLP-16 .pcap file; the content decides, then the extension.
+/// Reads a PLY, PCD, LAS, LAZ, KITTI .bin, XYZ/CSV or VLP-16 .pcap file; the content decides, then the extension.
 /// What can be read in a damaged file is read, and the findings say what was left out. A file that holds no point is an
 /// error. Throws IoError with the place and the reason; never allocates more than the file's own size can account for.
 ReadResult read_points(const std::filesystem::path& path, const ReadOptions& options = {});

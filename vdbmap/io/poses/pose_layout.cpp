@@ -94,7 +94,7 @@ std::optional<std::size_t> meaning_of(std::string_view name) {
 std::optional<double> seconds_of_unit(const ColumnName& column) {
   constexpr std::pair<std::string_view, double> kUnits[] = {{"ns", 1e-9}, {"us", 1e-6}, {"ms", 1e-3}, {"s", 1}};
   for (const auto& [unit, seconds] : kUnits) {
-    if (column.unit == unit || column.name.ends_with("_" + std::string(unit))) return seconds;
+    if (column.unit == unit || column.name.ends_with(std::string(1, '_').append(unit))) return seconds;
   }
   return std::nullopt;
 }

@@ -305,15 +305,6 @@ TEST_F(Las, OtherFilesVersionsFormatsAndScalesAreAnError) {
   EXPECT_NE(error_with(las12, 171, HUGE_VAL).find(": byte 171: offset"), std::string::npos);
 }
 
-TEST_F(Las, CompressedPointsAreRefusedWithAdvice) {
-  EXPECT_NE(
-      error_with(two_points(3).bytes(), 104, std::uint8_t{0x83}).find("byte 104: LAZ compression is not supported"),
-      std::string::npos);
-  LasBytes las = two_points(0);
-  las.records = {{"laszip encoded", 22204, std::string(52, '\1')}};
-  EXPECT_NE(error_for(las.bytes()).find("LAZ compression is not supported: decompress"), std::string::npos);
-}
-
 TEST_F(Las, NoPointsAreAnError) {
   LasBytes las;
   EXPECT_EQ(error_for(las.bytes()), ": the file holds no points");
