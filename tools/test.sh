@@ -9,7 +9,9 @@ cd "$(dirname "${BASH_SOURCE[0]}")/.."
 preset=${1:-release}
 build=build/$preset
 
-install_missing "${build_packages[@]}" "${test_packages[@]}"
+packages=("${build_packages[@]}" "${test_packages[@]}")
+if [[ $preset == asan ]]; then packages+=("${sanitizer_packages[@]}"); fi
+install_missing "${packages[@]}"
 npm ci --prefix tests/exchange --no-audit --no-fund
 cmake --preset "$preset"
 cmake --build --preset "$preset"

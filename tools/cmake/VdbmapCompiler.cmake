@@ -32,6 +32,3 @@ if(CCACHE_PROGRAM AND NOT CMAKE_CXX_COMPILER_LAUNCHER)
   # Without it every build gets another precompiled header, and ccache never hits.
   target_compile_options(vdbmap_compiler INTERFACE $<$<CXX_COMPILER_ID:GNU>:-fpch-preprocess>)
 endif()
-
-# Clang 14 loses members of OpenVDB's trees that it instantiated in a precompiled header: the link would miss them.
-set(CMAKE_PCH_INSTANTIATE_TEMPLATES OFF)

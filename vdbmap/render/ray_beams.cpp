@@ -8,8 +8,9 @@
 
 #include <openvdb/tools/Morphology.h>
 
-// OpenVDB's library holds this tree, compiled.
+#ifndef __clang__  // see io/vdb/standard_grids.h
 extern template class openvdb::tree::Tree<openvdb::MaskTree::RootNodeType>;
+#endif
 
 namespace vdbmap {
 namespace {
