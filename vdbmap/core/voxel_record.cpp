@@ -68,7 +68,12 @@ void set_normal(VoxelRecord& record, const Eigen::Vector3d& normal) {
   // The code keeps three signs and |x|, |y| as 126ths of |x|+|y|+|z|. OpenVDB's pack() rounds down, which tilts every
   // normal towards z. Here all three are rounded to the nearest, and where they do not add up to 126 the one farthest
   // from its value gives way: the nearest code, without bias.
-  const Eigen::Array3d scaled = normal.array().abs() * (126.0 / normal.lpNorm<1>());
+  const double length = normal.lpNorm<1>();
+  if (!(length > 0 && length < std::numeric_limits<double>::infinity())) {
+    record.normal_code = 0;  // up: files of other programs have normals of zeros and NaN
+    return;
+  }
+  const Eigen::Array3d scaled = normal.array().abs() * (126.0 / length);
   Eigen::Array3d steps = scaled.round();
   const double excess = steps.sum() - 126;
   if (excess != 0) {

@@ -58,7 +58,7 @@ void set_moments(VoxelRecord& record, const Moments& moments, const VoxelIndex& 
 /// for 256. The bytes it frees compress away in the file.
 float round_covariance(double value, std::int64_t count);
 
-/// Stores a unit normal, to 0.65 degrees.
+/// Stores a unit normal, to 0.65 degrees; one of zeros, or that is not finite, as (0, 0, 1).
 void set_normal(VoxelRecord& record, const Eigen::Vector3d& normal);
 
 /// Stores a linear colour, clamped to 0..1 (NaN to 0) and rounded to 8 bits: 8-bit sRGB colours stay what they are.

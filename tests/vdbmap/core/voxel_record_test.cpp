@@ -168,6 +168,17 @@ TEST(VoxelRecord, KeepsNormalsOnTheSeamsOfTheCode) {
   }
 }
 
+TEST(VoxelRecord, WhatIsNoDirectionPointsUp) {
+  const double nan = std::nan(""), infinity = std::numeric_limits<double>::infinity();
+  for (const Eigen::Vector3d& none :
+       {Eigen::Vector3d(0, 0, 0), Eigen::Vector3d(nan, 0, 1), Eigen::Vector3d(0, infinity, 0)}) {
+    VoxelRecord record;
+    set_normal(record, {1, 0, 0});
+    set_normal(record, none);
+    EXPECT_EQ(normal_of(record), Eigen::Vector3d::UnitZ()) << none.transpose();
+  }
+}
+
 TEST(VoxelRecord, KeepsColorsToEightBitsAndClampsTheRest) {
   const Eigen::AlignedBox3d unit(Eigen::Vector3d::Zero(), Eigen::Vector3d::Ones());
   for (const Eigen::Vector3d& color : test::random_points(1000, unit, 5)) {
