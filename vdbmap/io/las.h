@@ -11,10 +11,10 @@ namespace vdbmap {
 
 /// Reads LAS 1.0 to 1.4, point formats 0 to 10, without waveforms; and LAZ, formats 0 to 3 and 6 to 8, on all threads
 /// allowed, whatever the file is called. Coordinates keep the file's unit, which the result names, as it does the EPSG
-/// code, from GeoTIFF keys or WKT. Labels are classifications, times GPS times as the file has them. Intensities, labels
-/// and colours that are 0 in every point count as unknown; colours of which none exceeds 255 are taken for 8-bit.
-/// Withheld points are left out. Of a damaged file the points that are whole are read, of LAZ the chunks that are, and
-/// the findings say what is wrong. Throws IoError, also for coordinates that are degrees or geocentric.
+/// code, from GeoTIFF keys or WKT. Labels are classifications, times GPS times as the file has them. Intensities,
+/// labels and colours that are 0 in every point count as unknown; colours of which none exceeds 255 are taken for
+/// 8-bit. Withheld points are left out. Of a damaged file the points that are whole are read, of LAZ the chunks that
+/// are, and the findings say what is wrong. Throws IoError, also for coordinates that are degrees or geocentric.
 ReadResult read_las(const std::filesystem::path& path);
 
 struct LasWriteOptions {
