@@ -32,7 +32,7 @@ build_all() {
   cmake --build "$build" \
     --target vdbmap_command map_benchmark fine_benchmark odometry_benchmark coarse_benchmark render_benchmark \
     laz_benchmark
-  npm ci --prefix tests/exchange --no-audit --no-fund
+  npm ci --prefix tests/exchange --no-audit --no-fund || echo "laz-perf is not installed: LAZ has no peer"
 }
 
 # Interleaving spreads other programs' work over all rows, so that their ratios hold on a busy machine.

@@ -4,6 +4,8 @@
 #include <csignal>
 #include <limits>
 #include <random>
+#include <utility>
+#include <vector>
 
 #include <gtest/gtest.h>
 #include <sys/mount.h>
