@@ -4,8 +4,8 @@
 #include <algorithm>
 #include <bitset>
 #include <numbers>
-#include <sstream>
-#include <stdexcept>
+
+#include "vdbmap/core/option_check.h"
 
 namespace vdbmap::registration {
 namespace {
@@ -104,16 +104,10 @@ std::vector<std::size_t> gaps_along(std::span<const PathPose> path) {
 }  // namespace
 
 void DriftModel::check() const {
-  const auto require = [](bool condition, const char* name, double value) {
-    if (condition) return;
-    std::ostringstream message;
-    message << name << " is " << value << ", expected 0 or more";
-    throw std::invalid_argument(message.str());
-  };
-  require(translation >= 0, "translation", translation);
-  require(turn_deg >= 0, "turn_deg", turn_deg);
-  require(translation_per_metre >= 0, "translation_per_metre", translation_per_metre);
-  require(turn_deg_per_metre >= 0, "turn_deg_per_metre", turn_deg_per_metre);
+  require(translation >= 0, "translation", translation, "0 or more");
+  require(turn_deg >= 0, "turn_deg", turn_deg, "0 or more");
+  require(translation_per_metre >= 0, "translation_per_metre", translation_per_metre, "0 or more");
+  require(turn_deg_per_metre >= 0, "turn_deg_per_metre", turn_deg_per_metre, "0 or more");
 }
 
 DriftAllowance allowance_after(double way, const DriftModel& drift) {

@@ -38,7 +38,7 @@ CombinedScans BatchBuilder::combine() const {
   options.anchor = Eigen::Vector3d::Zero();
   VoxelMap map = build_map(points_, options);  // of one level
 
-  std::vector<Ray> rays;
+  std::vector<MeasuredRay> rays;
   const std::size_t step = std::max<std::size_t>(1, sample_.size() / kRays);
   std::size_t scan = 0;
   for (std::size_t i = 0; i < sample_.size(); i += step) {

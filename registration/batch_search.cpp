@@ -3,12 +3,9 @@
 
 #include <algorithm>
 #include <cmath>
-#include <sstream>
-#include <stdexcept>
 
 #include <Eigen/Eigenvalues>
 
-#include "registration/percent.h"
 #include "vdbmap/core/parallel.h"
 
 namespace vdbmap::registration {
@@ -101,39 +98,6 @@ Candidates places_of(std::span<const PoseHypothesis> hypotheses, const Search& s
   return places;
 }
 
-// Standard deviation of the place in its least certain direction [m].
-double greatest_deviation(const Matrix6d& covariance) {
-  const Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d> solver(covariance.bottomRightCorner<3, 3>().eval(),
-                                                              Eigen::EigenvaluesOnly);
-  return std::sqrt(std::max(solver.eigenvalues()[2], 0.0));
-}
-
-// Why a candidate is not believed, whatever the others; empty when it is.
-std::string reason_against(const BatchCandidate& best, const VerdictOptions& verdict) {
-  if (best.evidence.overlap < verdict.min_overlap) {
-    return "only " + percent(best.evidence.overlap) + " of the points have the map near by";
-  }
-  if (best.agreement < verdict.min_agreement) {
-    return "only " + percent(best.agreement) + " of its surfaces agree with the map's";
-  }
-  if (best.evidence.blocked_share > verdict.max_blocked_share) {
-    return percent(best.evidence.blocked_share) + " of the rays would pass through solid map";
-  }
-  if (greatest_deviation(best.covariance) > verdict.max_deviation) return "the map does not determine its place";
-  return "";
-}
-
-// Why the best candidate is not believed beside the others; empty when it is.
-std::string reason_not_found(std::span<const BatchCandidate> candidates, const VerdictOptions& verdict) {
-  if (candidates.empty()) return "no features agree with the map";
-  const BatchCandidate& best = candidates.front();
-  std::string reason = reason_against(best, verdict);
-  if (!reason.empty() || candidates.size() < 2) return reason;
-  const double next = candidates[1].agreement;
-  if (best.agreement >= verdict.min_margin * next) return "";
-  return "another pose agrees nearly as well: " + percent(next) + " of its surfaces beside " + percent(best.agreement);
-}
-
 // How many of the waiting places are aligned on all levels next: until there is a rival to the best, then those that
 // may yet come as near to it as to put it in doubt, where nothing else does.
 std::size_t count_next(std::span<const BatchCandidate> aligned, std::span<const BatchCandidate> waiting,
@@ -164,30 +128,15 @@ Candidates align_contenders(Candidates places, const Search& search) {
 
 }  // namespace
 
-void VerdictOptions::check() const {
-  const auto require = [](bool condition, const char* name, double value, const char* allowed) {
-    if (condition) return;
-    std::ostringstream message;
-    message << name << " is " << value << ", expected " << allowed;
-    throw std::invalid_argument(message.str());
-  };
-  require(min_overlap >= 0 && min_overlap <= 1, "min_overlap", min_overlap, "0 to 1");
-  require(min_agreement >= 0 && min_agreement <= 1, "min_agreement", min_agreement, "0 to 1");
-  require(max_blocked_share >= 0 && max_blocked_share <= 1, "max_blocked_share", max_blocked_share, "0 to 1");
-  require(max_deviation > 0, "max_deviation", max_deviation, "more than 0 m");
-  require(min_margin >= 1, "min_margin", min_margin, "1 or more");
-}
-
 BatchResult find_batch(const CombinedScans& combined, const VoxelMap& map, const CoarseMap& coarse_map,
                        const CoarseOptions& coarse, const VerdictOptions& verdict, const FineOptions& fine) {
   verdict.check();
   fine.check();
-  if (combined.sample.fine.size() >= verdict.min_points) {
+  if (reason_too_few(combined.sample.fine.size(), verdict).empty()) {
     return compare_hypotheses(combined, map, find_coarse(combined.level, coarse_map, coarse), verdict, fine);
   }
   BatchResult result;
-  result.reason = "too few points: " + std::to_string(combined.sample.fine.size()) + " of " +
-                  std::to_string(verdict.min_points) + " needed, 1.5 m apart";
+  result.reason = reason_too_few(combined.sample.fine.size(), verdict);
   return result;
 }
 

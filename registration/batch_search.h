@@ -9,39 +9,17 @@
 #include "registration/evidence.h"
 #include "registration/fine/point_to_plane.h"
 #include "registration/fine/scan_sample.h"
+#include "registration/verdict.h"
 #include "vdbmap/core/voxel_map.h"
 
 namespace vdbmap::registration {
-
-/// When a pose found without a guess is believed.
-struct VerdictOptions {
-  double min_overlap = 0.3;        ///< share of the points that have the map near by
-  double min_agreement = 0.52;     ///< surface_agreement(); on KITTI streets true poses reach 0.56, others 0.47
-  double max_blocked_share = 0.6;  ///< of the rays: through solid map; what has moved since blocks some
-  double min_margin = 1.2;         ///< agreement of the best pose by that of the next best
-  double max_deviation = 0.25;     ///< [m] standard deviation of the place in its least certain direction
-  std::size_t min_points = 200;    ///< sampled points of a batch, 1.5 m apart
-
-  /// Throws std::invalid_argument naming the value and what is allowed.
-  void check() const;
-};
 
 /// Scans of a batch joined by odometry, ready to be looked for. The frame is that of the batch.
 struct CombinedScans {
   VoxelLevel level;    ///< voxels as large as the map's coarsest
   SampledScan sample;  ///< all scans together
   std::vector<SurfacePiece> pieces;
-  std::vector<Ray> rays;
-};
-
-/// A pose of the batch, aligned as well as may be.
-struct BatchCandidate {
-  Eigen::Isometry3d map_from_batch = Eigen::Isometry3d::Identity();  ///< original system
-  Eigen::Isometry3d coarse_guess = Eigen::Isometry3d::Identity();    ///< the same before it was aligned
-  std::size_t num_feature_inliers = 0;                               ///< of the coarse search
-  double agreement = 0;                                              ///< surface_agreement()
-  Evidence evidence;
-  Matrix6d covariance = Matrix6d::Zero();  ///< as FineResult::covariance
+  std::vector<MeasuredRay> rays;
 };
 
 /// Where a batch lies, or why that is not known.

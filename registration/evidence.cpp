@@ -10,13 +10,12 @@
 
 #include "registration/fine/plane_match.h"
 #include "registration/fine/plane_residual.h"
+#include "registration/fine/point_to_plane.h"
 #include "vdbmap/core/eigen_features.h"
 #include "vdbmap/core/parallel.h"
 
 namespace vdbmap::registration {
 namespace {
-
-constexpr double kInlierDistance = 0.15;  // [m] of a point from its plane
 
 // Whether a voxel's points are a flat piece of one surface: a voxel in a corner holds several, which another sampling
 // weighs otherwise.
@@ -124,7 +123,7 @@ bool is_wall(const VoxelRecord& record, const Eigen::Vector3d& direction) {
 }
 
 // Whether the ray runs through a wall well before its end.
-bool is_blocked(const VoxelFinder& finder, const VoxelLevel& level, const Ray& ray) {
+bool is_blocked(const VoxelFinder& finder, const VoxelLevel& level, const MeasuredRay& ray) {
   constexpr double kMinDistance = 2.0;  // [m] from the sensor: its own vehicle
   constexpr double kMargin = 1.0;       // [m] before the end: what was measured, and what lies close to it
   const Eigen::Vector3d whole = ray.end - ray.origin;
@@ -145,7 +144,7 @@ bool is_blocked(const VoxelFinder& finder, const VoxelLevel& level, const Ray& r
   return false;
 }
 
-std::size_t count_blocked(std::span<const Ray> rays, const VoxelLevel& level,
+std::size_t count_blocked(std::span<const MeasuredRay> rays, const VoxelLevel& level,
                           const Eigen::Isometry3d& local_from_source) {
   constexpr std::size_t kGrain = 32;
   const double per_metre = voxels_per_metre(level.voxel_size());
@@ -153,7 +152,7 @@ std::size_t count_blocked(std::span<const Ray> rays, const VoxelLevel& level,
   parallel_ranges(rays.size(), kGrain, [&](std::size_t begin, std::size_t end) {
     const VoxelFinder finder(level);
     for (std::size_t i = begin; i < end; ++i) {
-      const Ray ray{local_from_source * rays[i].origin, local_from_source * rays[i].end};
+      const MeasuredRay ray{local_from_source * rays[i].origin, local_from_source * rays[i].end};
       if (!is_addressable(ray.origin, per_metre) || !is_addressable(ray.end, per_metre)) continue;
       blocked[i] = is_blocked(finder, level, ray);
     }
@@ -194,7 +193,7 @@ double surface_agreement(std::span<const SurfacePiece> pieces, const VoxelMap& m
   return balanced_share(normals, agrees);
 }
 
-Evidence weigh(std::span<const Eigen::Vector3d> points, std::span<const Ray> rays, const VoxelMap& map,
+Evidence weigh(std::span<const Eigen::Vector3d> points, std::span<const MeasuredRay> rays, const VoxelMap& map,
                const Eigen::Isometry3d& map_from_source) {
   const Eigen::Isometry3d local_from_source = local_pose(map_from_source, map);
   const std::vector<Eigen::Vector3d> overlapping = overlapping_points(points, map.coarsest(), local_from_source);

@@ -12,7 +12,7 @@
 namespace vdbmap::registration {
 
 /// A laser ray from the sensor to the point that it measured [m].
-struct Ray {
+struct MeasuredRay {
   Eigen::Vector3d origin = Eigen::Vector3d::Zero();
   Eigen::Vector3d end = Eigen::Vector3d::Zero();
 };
@@ -47,7 +47,7 @@ struct Evidence {
 
 /// Weighs a pose. Points, and rays that end in them, are in the frame of the source; `map_from_source` leads to the
 /// original system. The same for any number of threads.
-Evidence weigh(std::span<const Eigen::Vector3d> points, std::span<const Ray> rays, const VoxelMap& map,
+Evidence weigh(std::span<const Eigen::Vector3d> points, std::span<const MeasuredRay> rays, const VoxelMap& map,
                const Eigen::Isometry3d& map_from_source);
 
 }  // namespace vdbmap::registration

@@ -19,10 +19,10 @@ namespace {
 
 constexpr double kUprightTilt_deg = 10;
 
-std::vector<Ray> rays_of(const SampledScan& sample) {
+std::vector<MeasuredRay> rays_of(const SampledScan& sample) {
   constexpr std::size_t kRaysPerScan = 500;
   const std::size_t step = std::max<std::size_t>(1, sample.fine.size() / kRaysPerScan);
-  std::vector<Ray> rays;
+  std::vector<MeasuredRay> rays;
   for (std::size_t i = 0; i < sample.fine.size(); i += step) rays.push_back({Eigen::Vector3d::Zero(), sample.fine[i]});
   return rays;
 }

@@ -7,6 +7,7 @@
 #include <stdexcept>
 
 #include "registration/coarse/feature_matches.h"
+#include "vdbmap/core/option_check.h"
 
 namespace vdbmap::registration {
 namespace {
@@ -46,12 +47,6 @@ void check_reach(double radius, const VoxelLevel& level, const char* name) {
 }  // namespace
 
 void CoarseOptions::check() const {
-  const auto require = [](bool condition, const char* name, double value, const char* allowed) {
-    if (condition) return;
-    std::ostringstream message;
-    message << name << " is " << value << ", expected " << allowed;
-    throw std::invalid_argument(message.str());
-  };
   require(feature_radius > 0, "feature_radius", feature_radius, "more than 0 m");
   require(orientation_radius > 0, "orientation_radius", orientation_radius, "more than 0 m");
   require(num_keypoints > 0, "num_keypoints", static_cast<double>(num_keypoints), "1 or more");

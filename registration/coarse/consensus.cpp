@@ -7,12 +7,11 @@
 #include <cstdint>
 #include <numbers>
 #include <numeric>
-#include <sstream>
-#include <stdexcept>
 #include <tuple>
 
 #include <Eigen/SVD>
 
+#include "vdbmap/core/option_check.h"
 #include "vdbmap/core/parallel.h"
 
 namespace vdbmap::registration {
@@ -248,12 +247,6 @@ bool are_alike(const Eigen::Isometry3d& a, const Eigen::Isometry3d& b, const Eig
 }
 
 void ConsensusOptions::check() const {
-  const auto require = [](bool condition, const char* name, double value, const char* allowed) {
-    if (condition) return;
-    std::ostringstream message;
-    message << name << " is " << value << ", expected " << allowed;
-    throw std::invalid_argument(message.str());
-  };
   require(inlier_distance > 0, "inlier_distance", inlier_distance, "more than 0 m");
   require(max_length_difference > 0, "max_length_difference", max_length_difference, "more than 0 m");
   require(min_length >= 0, "min_length", min_length, "0 m or more");

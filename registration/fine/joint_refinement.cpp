@@ -4,8 +4,6 @@
 #include <array>
 #include <cmath>
 #include <numbers>
-#include <sstream>
-#include <stdexcept>
 #include <utility>
 
 #include <Eigen/Cholesky>
@@ -13,6 +11,7 @@
 #include <ceres/rotation.h>
 
 #include "registration/fine/odometry_trust.h"
+#include "vdbmap/core/option_check.h"
 
 namespace vdbmap::registration {
 namespace {
@@ -189,15 +188,9 @@ std::vector<Matrix6d> covariances_of(ceres::Problem& problem, const std::vector<
 }  // namespace
 
 void JointOptions::check() const {
-  const auto require = [](bool condition, const char* name, double value) {
-    if (condition) return;
-    std::ostringstream message;
-    message << name << " is " << value << ", expected more than 0";
-    throw std::invalid_argument(message.str());
-  };
-  require(odometry_translation > 0, "odometry_translation", odometry_translation);
-  require(odometry_rotation_deg > 0, "odometry_rotation_deg", odometry_rotation_deg);
-  require(outlier_scale > 0, "outlier_scale", outlier_scale);
+  require(odometry_translation > 0, "odometry_translation", odometry_translation, "more than 0");
+  require(odometry_rotation_deg > 0, "odometry_rotation_deg", odometry_rotation_deg, "more than 0");
+  require(outlier_scale > 0, "outlier_scale", outlier_scale, "more than 0");
 }
 
 std::vector<PoseEstimate> refine_jointly(std::span<const SequencePose> sequence, const JointOptions& options) {

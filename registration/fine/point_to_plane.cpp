@@ -5,16 +5,14 @@
 #include <array>
 #include <cmath>
 #include <numbers>
-#include <sstream>
 #include <stdexcept>
 
 #include "registration/fine/observability.h"
 #include "registration/fine/robust_rounds.h"
+#include "vdbmap/core/option_check.h"
 
 namespace vdbmap::registration {
 namespace {
-
-constexpr double kInlierDistance = 0.15;  // [m] of a point from its plane on the finest level
 
 // Below this share of inliers other headings are tried. On KITTI streets aligned scans keep above 0.6, lost ones below
 // 0.4.
@@ -151,12 +149,6 @@ FineResult report(const RoundsResult& rounds, const SampledScan& sample, const V
 }  // namespace
 
 void FineOptions::check() const {
-  const auto require = [](bool condition, const char* name, double value, const char* allowed) {
-    if (condition) return;
-    std::ostringstream message;
-    message << name << " is " << value << ", expected " << allowed;
-    throw std::invalid_argument(message.str());
-  };
   require(coarse_spacing > 0.01, "coarse_spacing", coarse_spacing, "more than 0.01 m");
   require(fine_spacing > 0.01, "fine_spacing", fine_spacing, "more than 0.01 m");
   require(range.min >= 0, "range.min", range.min, "0 m or more");

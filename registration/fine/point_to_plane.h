@@ -13,6 +13,9 @@
 
 namespace vdbmap::registration {
 
+/// A point this near to a plane of the finest level lies on the map [m].
+inline constexpr double kInlierDistance = 0.15;
+
 /// How a scan is aligned.
 struct FineOptions {
   double coarse_spacing = 1.5;  ///< [m] of the points used on the coarser levels

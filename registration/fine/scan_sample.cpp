@@ -17,7 +17,7 @@ constexpr std::size_t kPointsPerPart = 8192;  // its cells stay in cache
 
 // The first point of a cell, as far as a part of the scan knows.
 struct FirstPoint {
-  Cell cell;
+  VoxelId cell;
   std::uint32_t index;
 };
 
@@ -35,10 +35,11 @@ struct Sampling {
 std::vector<FirstPoint> first_points(const Sampling& sampling, std::size_t begin, std::size_t end) {
   std::vector<FirstPoint> first;
   CellTable cells(512);
-  Cell last = ~Cell{0};  // no cell; points in the order of a sweep mostly share the cell of the one before
+  VoxelId last =
+      VoxelId{~std::uint64_t{0}};  // no cell; points in the order of a sweep mostly share the cell of the one before
   for (std::size_t i = begin; i < end; ++i) {
     if (!sampling.in_range(sampling.points[i])) continue;
-    const Cell cell = cell_of(voxel_of_point(sampling.points[i], sampling.cells_per_metre));
+    const VoxelId cell = id_of_voxel(voxel_of_point(sampling.points[i], sampling.cells_per_metre));
     if (cell == last) continue;
     last = cell;
     const auto index = static_cast<std::uint32_t>(i);

@@ -4,9 +4,9 @@
 #include <algorithm>
 #include <bit>
 #include <cmath>
-#include <sstream>
-#include <stdexcept>
 #include <string>
+
+#include "vdbmap/core/option_check.h"
 
 namespace vdbmap::registration {
 namespace {
@@ -32,12 +32,6 @@ struct LocalMap::Nearest {
 };
 
 void LocalMapOptions::check() const {
-  const auto require = [](bool condition, const char* name, double value, const std::string& allowed) {
-    if (condition) return;
-    std::ostringstream message;
-    message << name << " is " << value << ", expected " << allowed;
-    throw std::invalid_argument(message.str());
-  };
   require(voxel_size >= 0.01 && voxel_size <= 100, "voxel_size", voxel_size, "0.01 to 100 m");
   require(points_per_voxel >= 1 && points_per_voxel <= LocalMap::kCapacity, "points_per_voxel", points_per_voxel,
           "1 to " + std::to_string(LocalMap::kCapacity));
@@ -61,10 +55,10 @@ void LocalMap::insert(std::span<const Eigen::Vector3d> points) {
   for (const Eigen::Vector3d& point : points) {
     if (!is_addressable(point, voxels_per_metre_)) continue;
     const VoxelIndex voxel = voxel_of_point(point, voxels_per_metre_);
-    const std::uint32_t number = table_.find_or_insert(cell_of(voxel), static_cast<std::uint32_t>(blocks_.size()));
+    const std::uint32_t number = table_.find_or_insert(id_of_voxel(voxel), static_cast<std::uint32_t>(blocks_.size()));
     if (number == blocks_.size()) {
       blocks_.emplace_back();
-      cells_.push_back(cell_of(voxel));
+      cells_.push_back(id_of_voxel(voxel));
     }
     add((point - corner_of_voxel(voxel, options_.voxel_size)).cast<float>(), blocks_[number]);
   }
@@ -86,7 +80,7 @@ void LocalMap::forget_far(const Eigen::Vector3d& sensor) {
   const double limit = options_.max_distance * options_.max_distance;
   std::size_t kept = 0;
   for (std::size_t i = 0; i < cells_.size(); ++i) {
-    const Eigen::Vector3d center = center_of_voxel(voxel_of_cell(cells_[i]), options_.voxel_size);
+    const Eigen::Vector3d center = center_of_voxel(voxel_of_id(cells_[i]), options_.voxel_size);
     if ((center - sensor).squaredNorm() > limit) continue;
     if (kept != i) {
       cells_[kept] = cells_[i];
@@ -123,14 +117,14 @@ void LocalMap::search(const Block& block, const Eigen::Vector3f& point_in_block,
 Eigen::Vector3d LocalMap::point_of(std::uint32_t block, int place) const {
   const Block& points = blocks_[block];
   const auto i = static_cast<std::size_t>(place);
-  return corner_of_voxel(voxel_of_cell(cells_[block]), options_.voxel_size) +
+  return corner_of_voxel(voxel_of_id(cells_[block]), options_.voxel_size) +
          Eigen::Vector3d(points.x[i], points.y[i], points.z[i]);
 }
 
 std::optional<Eigen::Vector3d> LocalMap::nearest(const Eigen::Vector3d& point, double max_distance) const {
   if (!is_addressable(point, voxels_per_metre_)) return std::nullopt;
   const VoxelIndex voxel = voxel_of_point(point, voxels_per_metre_);
-  const Cell cell = cell_of(voxel);
+  const VoxelId cell = id_of_voxel(voxel);
   const auto size = static_cast<float>(options_.voxel_size);
   const Eigen::Vector3f in_voxel = (point - corner_of_voxel(voxel, options_.voxel_size)).cast<float>();
   const std::array gaps = {squared_gaps(in_voxel.x(), size), squared_gaps(in_voxel.y(), size),
@@ -144,7 +138,7 @@ std::optional<Eigen::Vector3d> LocalMap::nearest(const Eigen::Vector3d& point, d
       if (gaps[0][i] + gaps[1][j] >= nearest.squared_distance) continue;
       for (std::size_t k = 0; k < 3; ++k) {
         if (gaps[0][i] + gaps[1][j] + gaps[2][k] >= nearest.squared_distance) continue;
-        const std::uint32_t number = table_.find(cell + cell_step(kSteps[i], kSteps[j], kSteps[k]));
+        const std::uint32_t number = table_.find(id_beside(cell, kSteps[i], kSteps[j], kSteps[k]));
         if (number == CellTable::kNone) continue;
         const Eigen::Vector3f corner(kSteps[i], kSteps[j], kSteps[k]);
         search(blocks_[number], in_voxel - size * corner, number, nearest);

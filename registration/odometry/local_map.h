@@ -71,9 +71,9 @@ class LocalMap {
 
   LocalMapOptions options_;
   double voxels_per_metre_;
-  float squared_spacing_;    // [m^2]
-  CellTable table_;          // the block of each cell
-  std::vector<Cell> cells_;  // one a block
+  float squared_spacing_;       // [m^2]
+  CellTable table_;             // the block of each cell
+  std::vector<VoxelId> cells_;  // one a block
   std::vector<Block> blocks_;
 };
 

@@ -5,11 +5,11 @@
 #include <cmath>
 #include <limits>
 #include <sstream>
-#include <stdexcept>
 #include <utility>
 
 #include "registration/odometry/wide_search.h"
 #include "registration/percent.h"
+#include "vdbmap/core/option_check.h"
 
 namespace vdbmap::registration {
 namespace {
@@ -63,12 +63,6 @@ Matrix6d with_axes_of(const Matrix6d& covariance, const Eigen::Matrix3d& axes) {
 }  // namespace
 
 void OdometryOptions::check() const {
-  const auto require = [](bool condition, const char* name, double value, const char* allowed) {
-    if (condition) return;
-    std::ostringstream message;
-    message << name << " is " << value << ", expected " << allowed;
-    throw std::invalid_argument(message.str());
-  };
   require(range.min >= 0, "range.min", range.min, "0 m or more");
   require(range.max > range.min && std::isfinite(range.max), "range.max", range.max, "more than range.min");
   require(map_spacing > 0 && map_spacing <= 10, "map_spacing", map_spacing, "more than 0, at most 10 voxels");

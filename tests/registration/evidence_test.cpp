@@ -16,7 +16,7 @@ struct Case {
   Eigen::Isometry3d map_from_scan{Eigen::Translation3d(-10, 0.5, 1.8)};
   std::vector<Eigen::Vector3d> points =
       sample_points(test::scan_scene(test::street(), map_from_scan).positions, 0.5, {});
-  std::vector<Ray> rays;
+  std::vector<MeasuredRay> rays;
 
   Case() {
     for (const Eigen::Vector3d& point : points) rays.push_back({Eigen::Vector3d::Zero(), point});
@@ -73,7 +73,7 @@ TEST(SurfaceAgreement, OfNothingIsNone) {
 
 TEST(Evidence, ARayThroughAWallIsBlockedAndOneBeforeItIsNot) {
   const VoxelMap map = build_map(test::sample_scene({{{5, -5, 0}, {0, 10, 0}, {0, 0, 4}}}, 400, 1));
-  const auto blocked = [&](const Ray& ray) {
+  const auto blocked = [&](const MeasuredRay& ray) {
     return weigh({}, std::vector{ray}, map, Eigen::Isometry3d::Identity()).blocked_share;
   };
   EXPECT_EQ(blocked({{0, 0, 2}, {9, 0.3, 2.2}}), 1);

@@ -5,7 +5,7 @@
 
 #include <Eigen/Geometry>
 
-#include "vdbmap/render/ray_caster.h"
+#include "vdbmap/core/ray_caster.h"
 
 namespace vdbmap {
 

@@ -7,7 +7,7 @@
 #include <cstdint>
 #include <vector>
 
-#include "vdbmap/render/ray_caster.h"
+#include "vdbmap/core/ray_caster.h"
 
 namespace vdbmap {
 

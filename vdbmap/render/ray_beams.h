@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #pragma once
 
+#include "vdbmap/core/ray_caster.h"
 #include "vdbmap/core/voxel_level.h"
 #include "vdbmap/render/camera.h"
-#include "vdbmap/render/ray_caster.h"
 
 namespace vdbmap {
 

@@ -25,12 +25,20 @@ TEST(PairAngles, OfTwoPointsOfOnePlaneAreZero) {
 }
 
 TEST(PairAngles, OfFloorAndWallAreThoseOfTheDefinition) {
-  // Source is the wall, whose normal makes the smaller angle with the line: u = (-1, 0, 0), the line runs to the floor,
-  // v = line x u points along -y, w = u x v along +z.
+  // The source is the wall, whose normal u = (-1, 0, 0) makes the smaller angle with the line (-2, 0, -1) to the floor:
+  // v = line x u points along +y, w = u x v along -z, and the floor's normal is -w.
   const PairAngles angles = pair_angles({0, 0, 0}, {0, 0, 1}, {2, 0, 1}, {-1, 0, 0});
   EXPECT_NEAR(angles.alpha, 0, 1e-12);
   EXPECT_NEAR(angles.phi, 2 / std::sqrt(5), 1e-12);
-  EXPECT_NEAR(std::abs(angles.theta), std::numbers::pi / 2, 1e-12);
+  EXPECT_NEAR(angles.theta, -std::numbers::pi / 2, 1e-12);
+}
+
+TEST(PairAngles, OfASlantedPairAreThoseByHand) {
+  // u = (0, 0, 1), the line (1, 0, 1) / sqrt(2): v = (0, -1, 0), w = (1, 0, 0).
+  const PairAngles angles = pair_angles({0, 0, 0}, {0, 0, 1}, {3, 0, 3}, {0.48, 0.64, -0.6});
+  EXPECT_NEAR(angles.alpha, -0.64, 1e-12);
+  EXPECT_NEAR(angles.phi, 1 / std::sqrt(2), 1e-12);
+  EXPECT_NEAR(angles.theta, std::atan2(0.48, -0.6), 1e-12);
 }
 
 TEST(PairAngles, DoNotDependOnTheOrderNorOnTheFrame) {

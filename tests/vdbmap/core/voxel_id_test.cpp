@@ -60,5 +60,16 @@ TEST(VoxelId, TextThatIsNoIdIsNothing) {
   }
 }
 
+TEST(VoxelId, AStepLeadsToTheNeighbor) {
+  const VoxelIndex voxel(0, -1, 7);
+  for (int x = -1; x <= 1; ++x) {
+    for (int y = -1; y <= 1; ++y) {
+      for (int z = -1; z <= 1; ++z) {
+        EXPECT_EQ(voxel_of_id(id_beside(id_of_voxel(voxel), x, y, z)), voxel.offsetBy(x, y, z));
+      }
+    }
+  }
+}
+
 }  // namespace
 }  // namespace vdbmap

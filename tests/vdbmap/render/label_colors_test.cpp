@@ -37,7 +37,14 @@ TEST(LabelColorsOfNoScheme, DifferWhateverTheStepOfTheNumbers) {
     for (std::int32_t i = 0; i < 30; ++i) seen.insert(channels_of(LabelScheme::kUnknown, i * step));
     EXPECT_EQ(seen.size(), 30U) << step;
   }
-  label_color(LabelScheme::kUnknown, -1);
+}
+
+TEST(LabelColorsOfNoScheme, NoClassIsGrayAsInEveryScheme) {
+  for (const LabelScheme scheme : {LabelScheme::kUnknown, LabelScheme::kAsprs, LabelScheme::kSemanticKitti}) {
+    const auto [red, green, blue] = channels_of(scheme, kNoLabel);
+    EXPECT_EQ(red, green);
+    EXPECT_EQ(green, blue);
+  }
 }
 
 }  // namespace

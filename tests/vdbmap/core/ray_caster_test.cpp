@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "vdbmap/render/ray_caster.h"
+#include "vdbmap/core/ray_caster.h"
 
 #include <algorithm>
 #include <cmath>

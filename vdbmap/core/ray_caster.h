@@ -8,8 +8,8 @@
 
 #include <Eigen/Core>
 
+#include "vdbmap/core/ray_nodes.h"
 #include "vdbmap/core/voxel_level.h"
-#include "vdbmap/render/ray_nodes.h"
 
 namespace vdbmap {
 
