@@ -6,6 +6,7 @@
 #include <nlohmann/json.hpp>
 #include <spdlog/fmt/fmt.h>
 
+#include "tools/cli/child_process.h"
 #include "tools/cli/command.h"
 #include "tools/cli/output.h"
 #include "vdbmap/io/file/text.h"
@@ -47,7 +48,7 @@ nlohmann::ordered_json json_of(const CheckResult& result, const CheckOptions& op
           {"rules", rules}};
 }
 
-ExitCode run(const CheckOptions& options, const CommonOptions& common) {
+ExitCode run_here(const CheckOptions& options, const CommonOptions& common) {
   const CheckResult result = check_vdb_file(options.file);
   if (common.json) {
     print_json(json_of(result, options));
@@ -55,6 +56,11 @@ ExitCode run(const CheckOptions& options, const CommonOptions& common) {
     print_result(text_of(result, options));
   }
   return all_passed(result.rules) ? ExitCode::kDone : ExitCode::kNo;
+}
+
+ExitCode run(const CheckOptions& options, const CommonOptions& common) {
+  return run_in_child(
+      options.file, [&] { return run_here(options, common); }, ChildLimits::for_file(options.file));
 }
 
 }  // namespace

@@ -3,6 +3,7 @@
 
 #include <nlohmann/json.hpp>
 
+#include "tools/cli/child_process.h"
 #include "tools/cli/command.h"
 #include "tools/cli/map_output.h"
 #include "tools/cli/map_summary.h"
@@ -25,7 +26,7 @@ void add_options(CLI::App& app, ImportOptions& options) {
   add_map_output(app, options.output);
 }
 
-ExitCode run(const ImportOptions& options, const CommonOptions& common) {
+ExitCode run_here(const ImportOptions& options, const CommonOptions& common) {
   check_output(options.output.file, kMapKind, {options.channels});
   const VoxelMap map = import_channels(options.channels);
   save_map(options.output.file, map, options.output.save);
@@ -35,6 +36,11 @@ ExitCode run(const ImportOptions& options, const CommonOptions& common) {
     print_result(text_of_map(map, options.output.file));
   }
   return ExitCode::kDone;
+}
+
+ExitCode run(const ImportOptions& options, const CommonOptions& common) {
+  return run_in_child(
+      options.channels, [&] { return run_here(options, common); }, ChildLimits::for_file(options.channels));
 }
 
 }  // namespace

@@ -5,6 +5,7 @@
 #include <nlohmann/json.hpp>
 #include <spdlog/fmt/fmt.h>
 
+#include "tools/cli/child_process.h"
 #include "tools/cli/command.h"
 #include "tools/cli/map_summary.h"
 #include "tools/cli/output.h"
@@ -90,13 +91,18 @@ void tell_foreign(const VdbDescription& description, const std::filesystem::path
   }
 }
 
-ExitCode run(const InfoOptions& options, const CommonOptions& common) {
+ExitCode run_here(const InfoOptions& options, const CommonOptions& common) {
   if (is_map_file(options.file)) {
     tell_map(load_map(options.file), options.file, common);
   } else {
     tell_foreign(describe_vdb(options.file), options.file, common);
   }
   return ExitCode::kDone;
+}
+
+ExitCode run(const InfoOptions& options, const CommonOptions& common) {
+  return run_in_child(
+      options.file, [&] { return run_here(options, common); }, ChildLimits::for_file(options.file));
 }
 
 }  // namespace

@@ -1,30 +1,22 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include <algorithm>
-#include <exception>
-#include <new>
 #include <sstream>
 #include <stdexcept>
 #include <string>
 #include <vector>
 
 #include <CLI/CLI.hpp>
-#include <spdlog/spdlog.h>
 
 #include "tools/cli/command.h"
+#include "tools/cli/error_report.h"
 #include "tools/cli/output.h"
 #include "tools/cli/process.h"
-#include "vdbmap/core/error.h"
 #include "vdbmap/core/parallel.h"
 
 namespace vdbmap::cli {
 namespace {
 
 constexpr const char* kVersion = "vdbmap " VDBMAP_VERSION;
-
-ExitCode fail(ExitCode code, const std::string& message) {
-  spdlog::error(message);
-  return code;
-}
 
 std::string footer(const std::string& examples) {
   std::string text = "Examples:\n";
@@ -89,28 +81,11 @@ ExitCode run_command_line(int argc, char** argv) {
   return run_chosen(app, commands, common);
 }
 
-// The one place where errors become messages and exit codes.
-ExitCode run_guarded(int argc, char** argv) {
-  try {
-    return run_command_line(argc, argv);
-  } catch (const IoError& error) {
-    const bool malformed = error.kind() == IoError::Kind::kMalformed;
-    return fail(malformed ? ExitCode::kBadInput : ExitCode::kInputOutputFailed, error.what());
-  } catch (const CLI::ParseError& error) {
-    return fail(ExitCode::kWrongUsage, error.what());
-  } catch (const std::invalid_argument& error) {
-    return fail(ExitCode::kWrongUsage, error.what());
-  } catch (const std::bad_alloc&) {
-    return fail(ExitCode::kInputOutputFailed, "out of memory");
-  } catch (const std::exception& error) {
-    return fail(ExitCode::kInputOutputFailed, error.what());
-  }
-}
-
 }  // namespace
 }  // namespace vdbmap::cli
 
 int main(int argc, char** argv) {
-  vdbmap::cli::prepare_process();
-  return static_cast<int>(vdbmap::cli::run_guarded(argc, argv));
+  using namespace vdbmap::cli;
+  prepare_process();
+  return static_cast<int>(report_errors([&] { return run_command_line(argc, argv); }));
 }
