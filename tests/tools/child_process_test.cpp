@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <csignal>
 #include <cstdlib>
+#include <ctime>
 #include <string>
 #include <vector>
 
@@ -36,7 +37,7 @@ TEST(ChildProcess, ASignalIsAnErrorOfTheFile) {
 
 TEST(ChildProcess, TimeIsLimited) {
   const auto run_on = [] {
-    for (volatile int i = 0;; i = i + 1) {
+    while (std::clock() != std::clock_t(-1)) {
     }
     return ExitCode::kDone;
   };
@@ -88,7 +89,8 @@ TEST(ForeignVdb, WhateverIsDamagedTheAnswerIsOneLineAndAnExitCode) {
     test::write_raw(path, damaged);
     for (const char* command : {"info", "check"}) {
       const auto run = test::run_command(VDBMAP_COMMAND, {command, path.string()});
-      EXPECT_TRUE(run.exit_code == 0 || run.exit_code == 1 || run.exit_code == 3) << command << " " << i << " " << run.err;
+      EXPECT_TRUE(run.exit_code == 0 || run.exit_code == 1 || run.exit_code == 3)
+          << command << " " << i << " " << run.err;
       if (run.exit_code != 3) continue;
       ++num_refused;
       EXPECT_NE(run.err.find("foreign.vdb"), std::string::npos) << i;

@@ -112,9 +112,9 @@ TEST_F(Output, ShowsNoControlCharactersOfFiles) {
   for (const std::string command : {"info", "check"}) {
     const CommandResult text = vdbmap({command, file});
     EXPECT_TRUE(is_clean(text.out)) << text.out;
-    const CommandResult json = vdbmap({command, file, "--json"});
-    EXPECT_TRUE(is_clean(json.out)) << json.out;
-    EXPECT_EQ(nlohmann::json::parse(json.out)["file"], file);
+    const CommandResult told = vdbmap({command, file, "--json"});
+    EXPECT_TRUE(is_clean(told.out)) << told.out;
+    EXPECT_EQ(nlohmann::json::parse(told.out)["file"], file);
   }
   const CommandResult error = vdbmap({"query", file, "--at", "0,0,0"});
   EXPECT_TRUE(is_clean(error.err)) << error.err;
