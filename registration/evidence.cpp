@@ -202,7 +202,7 @@ Evidence weigh(std::span<const Eigen::Vector3d> points, std::span<const Measured
   evidence.overlap = share(overlapping.size(), points.size());
   const std::vector<PlaneMatch> matches = match_planes(overlapping, map.finest(), local_from_source, {});
   const std::vector<double> distances = plane_distances(matches, local_from_source);
-  evidence.inlier_share = share(count_within(distances, kInlierDistance), overlapping.size());
+  evidence.on_surface_share = share(count_within(distances, kInlierDistance), overlapping.size());
   evidence.num_rays = rays.size();
   evidence.blocked_share = share(count_blocked(rays, map.finest(), local_from_source), rays.size());
   return evidence;

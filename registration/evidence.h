@@ -37,12 +37,12 @@ double surface_agreement(std::span<const SurfacePiece> pieces, const VoxelMap& m
 struct Evidence {
   std::size_t num_points = 0;
   double overlap = 0;       ///< share of the points that have the map within a voxel of the coarsest level
-  double inlier_share = 0;  ///< of the overlapping points: within 0.15 m of a plane of the finest level
+  double on_surface_share = 0;  ///< of the overlapping points: within 0.15 m of a plane of the finest level
   std::size_t num_rays = 0;
   double blocked_share = 0;  ///< of the rays: would have had to pass through a solid surface of the map
 
   /// Share of all points that the map explains: one figure to compare poses by.
-  double explained_share() const { return overlap * inlier_share; }
+  double explained_share() const { return overlap * on_surface_share; }
 };
 
 /// Weighs a pose. Points, and rays that end in them, are in the frame of the source; `map_from_source` leads to the

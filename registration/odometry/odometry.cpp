@@ -78,7 +78,7 @@ std::vector<Eigen::Vector3d> Odometry::Sample::deskewed(const Vector6d& twist, d
   return times.empty() || twist.isZero(0) ? positions : deskew_points(positions, times, {reference_time, twist});
 }
 
-double Odometry::Alignment::inlier_share() const {
+double Odometry::Alignment::overlap_share() const {
   return static_cast<double>(result.matches.num_inliers) / static_cast<double>(aligned_points.size());
 }
 
@@ -174,13 +174,13 @@ Odometry::Straightened Odometry::straightened_by(const Sample& second, const Ali
 // A scan that does not lie in the straightened map tells no motion: the first one waits for another.
 void Odometry::straighten_first_scan(const Sample& second, Alignment& alignment, const OdometryStep& step) {
   Straightened straight = straightened_by(second, alignment);
-  if (straight.alignment.inlier_share() < min_inlier_share(step)) return;
+  if (straight.alignment.overlap_share() < min_overlap_share(step)) return;
   map_ = std::move(straight.map);
   motion_ = straight.motion;
   alignment = std::move(straight.alignment);
 }
 
-double Odometry::min_inlier_share(const OdometryStep& step) const {
+double Odometry::min_overlap_share(const OdometryStep& step) const {
   const double kept = step.was_refound ? kMinRefoundShare : kMinKeptShare;
   return std::max(kMinInlierShare, kept * expected_share_);
 }
@@ -188,7 +188,7 @@ double Odometry::min_inlier_share(const OdometryStep& step) const {
 // Around where the motion leads to, then, in case a time stamp made that senseless, to where it leads usually.
 void Odometry::search_if_lost(double usual_interval, Alignment& alignment, OdometryStep& step) const {
   for (const Eigen::Isometry3d& guess : {motion_.predicted_pose(), motion_.predicted_pose(usual_interval)}) {
-    if (alignment.inlier_share() >= min_inlier_share(step)) return;
+    if (alignment.overlap_share() >= min_overlap_share(step)) return;
     const PointToPointResult rough =
         search_widely(alignment.aligned_points, map_, guess, alignment_options(options_.initial_threshold / 2));
     const PointToPointResult found =
@@ -202,10 +202,10 @@ void Odometry::search_if_lost(double usual_interval, Alignment& alignment, Odome
 void Odometry::accept(const Alignment& alignment, OdometryStep& step) {
   const Eigen::Isometry3d& map_from_scan = alignment.result.map_from_scan;
   step.num_iterations = alignment.result.num_iterations;
-  step.inlier_share = alignment.inlier_share();
-  if (step.inlier_share < min_inlier_share(step)) {
-    step.reason = "only " + percent(step.inlier_share) + " of its points lie on those of the scans before, expected " +
-                  percent(min_inlier_share(step));
+  step.overlap_share = alignment.overlap_share();
+  if (step.overlap_share < min_overlap_share(step)) {
+    step.reason = "only " + percent(step.overlap_share) + " of its points lie on those of the scans before, expected " +
+                  percent(min_overlap_share(step));
     const double least = std::min(expected_share_, kLeastDecayedShare / kMinKeptShare);
     expected_share_ = std::max(kExpectationDecay * expected_share_, least);
     return;
@@ -235,7 +235,7 @@ void Odometry::add_to_map(const Alignment& alignment, OdometryStep& step) {
   first_from_registered_ = step.first_from_scan;
   first_sample_.reset();
   last_lead_ = step.motion.lead;
-  expected_share_ = step.inlier_share;
+  expected_share_ = step.overlap_share;
 }
 
 }  // namespace vdbmap::registration

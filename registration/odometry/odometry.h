@@ -52,7 +52,7 @@ struct OdometryStep {
   bool has_time = false;       ///< whether the time stamps could be used, `motion.reference_time` among them
   std::string time_problem;    ///< why the scan was not deskewed although it has time stamps
   double sigma = 0;            ///< [m] the adaptive threshold used
-  double inlier_share = 0;     ///< of the points aligned: within half a voxel of the map
+  double overlap_share = 0;     ///< of the points aligned: within half a voxel of the map
   std::size_t num_points = 0;  ///< aligned
   int num_iterations = 0;
   bool was_refound = false;  ///< the scan lay far from where its motion led to; a wider search found it
@@ -95,7 +95,7 @@ class Odometry {
     std::vector<Eigen::Vector3d> points;
     std::vector<Eigen::Vector3d> aligned_points;
 
-    double inlier_share() const;
+    double overlap_share() const;
   };
 
   // The map that begins anew with its first scan deskewed, and the scan in it that told the motion.
@@ -112,7 +112,7 @@ class Odometry {
   void start(const Sample& sample);
   Straightened straightened_by(const Sample& second, const Alignment& alignment) const;
   void straighten_first_scan(const Sample& second, Alignment& alignment, const OdometryStep& step);
-  double min_inlier_share(const OdometryStep& step) const;
+  double min_overlap_share(const OdometryStep& step) const;
   void search_if_lost(double usual_interval, Alignment& alignment, OdometryStep& step) const;
   void accept(const Alignment& alignment, OdometryStep& step);
   void add_to_map(const Alignment& alignment, OdometryStep& step);

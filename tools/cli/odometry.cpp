@@ -170,7 +170,7 @@ nlohmann::ordered_json json_of(const ScanReport& report) {
     json["previous_from_scan"] = json_of_matrix(step.previous_from_scan.matrix().topRows<3>().eval());
     json["covariance"] = json_of_matrix(*step.covariance);
   }
-  json["inlier_share"] = step.inlier_share;
+  json["overlap_share"] = step.overlap_share;
   json["sigma_m"] = step.sigma;
   json["points"] = step.num_points;
   json["iterations"] = step.num_iterations;

@@ -248,7 +248,7 @@ TEST(Odometry, AScanOfAnotherPlaceIsRefused) {
   const std::size_t num_points = odometry.map().num_points();
   const OdometryStep step = odometry.register_scan(
       test::scan_scene(test::room(), Eigen::Isometry3d(Eigen::Translation3d(0, 0, 1.5)), scanner(99)));
-  EXPECT_FALSE(step.registered()) << step.inlier_share;
+  EXPECT_FALSE(step.registered()) << step.overlap_share;
   EXPECT_NE(step.reason.find("% of its points lie on those of the scans before"), std::string::npos) << step.reason;
   EXPECT_EQ(odometry.map().num_points(), num_points);
 }
@@ -331,9 +331,9 @@ TEST(Odometry, AShareThatDropsForGoodIsAcceptedAfterSomeScans) {
   int num_lost = 0;
   for (int i = 0; i < 18; ++i) {
     const OdometryStep step = odometry.register_scan(i < 5 ? still_scan(i) : in_rain(still_scan(i), 0.37));
-    if (i == 4) clear_share = step.inlier_share;
+    if (i == 4) clear_share = step.overlap_share;
     if (i == 5) {
-      ASSERT_FALSE(step.registered()) << step.inlier_share << " after " << clear_share;
+      ASSERT_FALSE(step.registered()) << step.overlap_share << " after " << clear_share;
     }
     if (i >= 5 && !step.registered()) ++num_lost;
     if (i < 14) continue;
