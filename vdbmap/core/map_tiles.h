@@ -1,0 +1,26 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#pragma once
+
+#include <span>
+#include <vector>
+
+#include "vdbmap/core/tile_id.h"
+#include "vdbmap/core/voxel_map.h"
+
+namespace vdbmap {
+
+/// The tiles in which a map has voxels, sorted.
+std::vector<TileId> tiles_of(const VoxelMap& map);
+
+/// What a map has in one tile: leaves and records as they are, on all levels. Normals keep what they saw beyond the
+/// border.
+VoxelMap cut_tile(const VoxelMap& map, const TileId& tile);
+
+/// One map of several that have no leaf in common, like those that cut_tile() makes of one: leaves and records are
+/// copied, nothing is computed, so the tiles of a map give that map again, bit for bit, in whatever order they come.
+///
+/// Throws std::invalid_argument without maps, and where frames, voxel sizes, attributes or label schemes differ or two
+/// maps have the same leaf.
+VoxelMap splice(std::span<const VoxelMap> maps);
+
+}  // namespace vdbmap
