@@ -58,6 +58,8 @@ void add_options(CLI::App& app, SimulateCommandOptions& options) {
   app.add_option("--scans", simulate.num_scans, "Scans that vlp16 and hdl64 take in an epoch, 10 a second, 1 to 5000")
       ->type_name("N")
       ->capture_default_str();
+  app.add_flag("--ideal", simulate.street.is_ideal,
+               "A street where nothing moves, hedges are neat, and no survey has an error");
   app.add_option("--occupancy", simulate.street.occupancy, "Share of the parking spaces that is taken, 0 to 1")
       ->type_name("S")
       ->capture_default_str();

@@ -2,12 +2,10 @@
 #include "tools/simulator/epoch_writer.h"
 
 #include <algorithm>
-#include <array>
 
 #include <nlohmann/json.hpp>
 #include <spdlog/fmt/fmt.h>
 
-#include "tools/simulator/lidar.h"
 #include "tools/simulator/mapper.h"
 #include "tools/simulator/street_json.h"
 #include "tools/simulator/truth_files.h"
@@ -52,16 +50,18 @@ DriveOptions scan_drive(const Street& street, int epoch, double duration) {
   return drive;
 }
 
-// The folders, files and model of a turning scanner.
-struct LidarFiles {
-  const char* scans;
-  const char* poses;  // without extension
-  LidarModel model;
-};
+// Names without extension of what a turning scanner's files and folders are called: the VLP-16's have no name in them.
+std::string scans_name(const Sensor& sensor) { return sensor.name == "vlp16" ? "scans" : "scans_" + sensor.name; }
+std::string poses_name(const Sensor& sensor) { return sensor.name == "vlp16" ? "poses" : "poses_" + sensor.name; }
 
-LidarFiles files_of(Sensor sensor) {
-  if (sensor == Sensor::kHdl64) return {"scans_hdl64", "poses_hdl64", hdl64()};
-  return {"scans", "poses", vlp16()};
+// A number of the sensor for seeds: named ones have their place in the table, others a number of their letters.
+std::uint64_t number_of(const Sensor& sensor) {
+  const auto& named = named_sensors();
+  const auto found = std::ranges::find(named, sensor.name, &Sensor::name);
+  if (found != named.end()) return static_cast<std::uint64_t>(found - named.begin());
+  std::uint64_t number = 0;
+  for (const char letter : sensor.name) number = hash(number, static_cast<unsigned char>(letter));
+  return number;
 }
 
 class EpochWriter {
@@ -82,8 +82,8 @@ class EpochWriter {
     const auto vehicles = street_.vehicles(epoch_);
     result_.num_vehicles = vehicles.size();
     write_vehicles(folder_ / "vehicles.csv", street_, epoch_);
-    for (const Sensor sensor : sensors_of_epoch(options_, epoch_)) {
-      if (sensor == Sensor::kMapper) {
+    for (const Sensor& sensor : sensors_of_epoch(options_.sensors, epoch_)) {
+      if (sensor.is_mapper()) {
         write_cloud();
       } else {
         write_scans(sensor);
@@ -101,16 +101,16 @@ class EpochWriter {
     return Eigen::Isometry3d(Eigen::Translation3d(street_.layout.axis.origin));
   }
 
-  void note_drive(Sensor sensor, const DriveOptions& drive, const nlohmann::ordered_json& scanner) {
+  void note_drive(const std::string& sensor, const DriveOptions& drive, const nlohmann::ordered_json& scanner) {
     drives_.push_back(
-        {{"epoch", epoch_}, {"sensor", name_of(sensor)}, {"drive", json_of_drive(drive)}, {"scanner", scanner}});
+        {{"epoch", epoch_}, {"sensor", sensor}, {"drive", json_of_drive(drive)}, {"scanner", scanner}});
   }
 
   void write_cloud() {
     const DriveOptions drive_options = mapper_drive(street_, epoch_);
     const Drive drive(street_.layout, drive_options);
     const MapperModel mapper = vmx250();
-    note_drive(Sensor::kMapper, drive_options, json_of_mapper(mapper));
+    note_drive("mapper", drive_options, json_of_mapper(mapper));
     const Daylight light = make_daylight(street_.options.seed, epoch_);
     const Survey survey = map_street(view_, drive, mapper, light, street_.layout.axis.origin, seed(0));
     result_.num_cloud_points = survey.cloud.size();
@@ -129,40 +129,41 @@ class EpochWriter {
     write_trajectory(folder_ / "mapper.tum", trajectory, TrajectoryFormat::kTum);
   }
 
-  void write_scans(Sensor sensor) {
-    const LidarFiles files = files_of(sensor);
+  void write_scans(const Sensor& sensor) {
+    const LidarModel& lidar = *sensor.lidar;
     const auto num_scans = static_cast<std::size_t>(options_.num_scans);
     const DriveOptions drive_options =
-        scan_drive(street_, epoch_, static_cast<double>(num_scans) * files.model.turn_time);
+        scan_drive(street_, epoch_, static_cast<double>(num_scans) * lidar.turn_time);
     const Drive drive(street_.layout, drive_options);
-    note_drive(sensor, drive_options, json_of_lidar(files.model));
-    std::filesystem::create_directories(folder_ / files.scans);
-    std::filesystem::create_directories(folder_ / "labels" / files.scans);
+    note_drive(sensor.name, drive_options, json_of_lidar(lidar));
+    std::filesystem::create_directories(folder_ / scans_name(sensor));
+    std::filesystem::create_directories(folder_ / "labels" / scans_name(sensor));
 
     Trajectory trajectory;
     for (std::size_t begin = 0; begin < num_scans; begin += kScansAtOnce) {
       std::vector<Survey> scans(std::min(kScansAtOnce, num_scans - begin));
-      parallel_for(scans.size(), [&](std::size_t i) { scans[i] = take_scan(sensor, files, drive, begin + i); });
+      parallel_for(scans.size(), [&](std::size_t i) { scans[i] = take_scan(sensor, drive, begin + i); });
       for (const Survey& scan : scans) {
         // The pose of a scan is that of its first point.
         const double time = scan.cloud.times.front();
         trajectory.times.push_back(time);
         trajectory.map_from_scan.emplace_back(map_from_scene() * drive.scene_from_vehicle(time) *
-                                              files.model.vehicle_from_scanner);
+                                              lidar.vehicle_from_scanner);
         result_.num_scan_points += scan.cloud.size();
       }
     }
     result_.num_scans += num_scans;
-    write_trajectory(folder_ / (std::string(files.poses) + ".txt"), trajectory, TrajectoryFormat::kKitti);
-    write_trajectory(folder_ / (std::string(files.poses) + ".tum"), trajectory, TrajectoryFormat::kTum);
+    write_trajectory(folder_ / (poses_name(sensor) + ".txt"), trajectory, TrajectoryFormat::kKitti);
+    write_trajectory(folder_ / (poses_name(sensor) + ".tum"), trajectory, TrajectoryFormat::kTum);
   }
 
-  Survey take_scan(Sensor sensor, const LidarFiles& files, const Drive& drive, std::size_t index) const {
-    const double start = drive.start_time() + static_cast<double>(index) * files.model.turn_time;
-    Survey scan = scan_turn(view_, drive, files.model, start, hash(seed(1 + static_cast<int>(sensor)), index));
+  Survey take_scan(const Sensor& sensor, const Drive& drive, std::size_t index) const {
+    const LidarModel& lidar = *sensor.lidar;
+    const double start = drive.start_time() + static_cast<double>(index) * lidar.turn_time;
+    Survey scan = scan_turn(view_, drive, lidar, start, hash(seed(1 + number_of(sensor)), index));
     const std::string name = fmt::format("{:06}", index);
-    write_pcd(folder_ / files.scans / (name + ".pcd"), scan.cloud);
-    write_labels(folder_ / "labels" / files.scans / (name + ".label"), scan.truth);
+    write_pcd(folder_ / scans_name(sensor) / (name + ".pcd"), scan.cloud);
+    write_labels(folder_ / "labels" / scans_name(sensor) / (name + ".label"), scan.truth);
     options_.on_step();
     return scan;
   }
@@ -183,23 +184,6 @@ class EpochWriter {
 EpochResult write_epoch(const std::filesystem::path& folder, const Street& street, int epoch,
                         const SimulateOptions& options, nlohmann::ordered_json& drives) {
   return EpochWriter(folder, street, epoch, options, drives).write();
-}
-
-std::vector<Sensor> sensors_of_epoch(const SimulateOptions& options, int epoch) {
-  if (options.sensors.empty()) return {epoch == 0 ? Sensor::kMapper : Sensor::kVlp16};
-  std::vector<Sensor> sensors;
-  for (const Sensor sensor : {Sensor::kMapper, Sensor::kVlp16, Sensor::kHdl64}) {
-    const bool is_used = std::ranges::any_of(options.sensors, [&](const SensorUse& use) {
-      return use.sensor == sensor && use.epoch.value_or(epoch) == epoch;
-    });
-    if (is_used) sensors.push_back(sensor);
-  }
-  return sensors;
-}
-
-const char* name_of(Sensor sensor) {
-  constexpr std::array<const char*, 3> kNames = {"mapper", "vlp16", "hdl64"};
-  return kNames[static_cast<std::size_t>(sensor)];
 }
 
 }  // namespace vdbmap::simulator

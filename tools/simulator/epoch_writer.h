@@ -5,7 +5,7 @@
 
 #include <nlohmann/json_fwd.hpp>
 
-#include "tools/simulator/simulate.h"
+#include "tools/simulator/simulate_options.h"
 #include "tools/simulator/street.h"
 
 namespace vdbmap::simulator {
@@ -14,11 +14,5 @@ namespace vdbmap::simulator {
 /// into `folder`. What the scanners were and how they drove is added to `drives`. Throws IoError.
 EpochResult write_epoch(const std::filesystem::path& folder, const Street& street, int epoch,
                         const SimulateOptions& options, nlohmann::ordered_json& drives);
-
-/// The sensors of an epoch, each once.
-std::vector<Sensor> sensors_of_epoch(const SimulateOptions& options, int epoch);
-
-/// "mapper", "vlp16", "hdl64".
-const char* name_of(Sensor sensor);
 
 }  // namespace vdbmap::simulator

@@ -72,6 +72,32 @@ LidarModel hdl64() {
   return lidar;
 }
 
+LidarModel hdl32() {
+  LidarModel lidar{{}, 2170, 0.1, {}, mounting()};
+  // 1.152 us apart, the lower half and the upper half in turns (Velodyne 63-9113, appendix).
+  for (int i = 0; i < 32; ++i) {
+    const int ring = i % 2 == 0 ? i / 2 : 16 + i / 2;
+    lidar.lasers.push_back({radians(-30.67 + 4 * ring / 3.0), 1.152e-6 * i, static_cast<std::uint16_t>(ring), 0});
+  }
+  lidar.pulse = {
+      .nearest = 0.5, .farthest = 100, .range_noise = 0.02, .divergence = 0.003, .half_range = 55, .random_loss = 0.02};
+  return lidar;
+}
+
+LidarModel os1_128() {
+  LidarModel lidar{{}, 1024, 0.1, {}, mounting()};
+  for (int ring = 0; ring < 128; ++ring) {
+    lidar.lasers.push_back({radians(-22.5 + 45 * ring / 127.0), 0, static_cast<std::uint16_t>(ring), 0});
+  }
+  lidar.pulse = {.nearest = 0.5,
+                 .farthest = 120,
+                 .range_noise = 0.015,
+                 .divergence = 0.006,
+                 .half_range = 70,
+                 .random_loss = 0.02};
+  return lidar;
+}
+
 Survey scan_turn(const SceneView& view, const Drive& drive, const LidarModel& lidar, double start_time,
                  std::uint64_t seed) {
   Survey scan;

@@ -43,6 +43,12 @@ LidarModel vlp16();
 /// degree apart; 10 Hz, 80 m as in KITTI's drives. Its 2 cm are mostly what calibration left of each laser's bias.
 LidarModel hdl64();
 
+/// Velodyne HDL-32E: 32 lasers from +10.67 to -30.67 degrees, 10 Hz, 2 cm of noise, 100 m.
+LidarModel hdl32();
+
+/// Ouster OS1-128: 128 lasers from +22.5 to -22.5 degrees that fire at once, 1024 times a turn, 10 Hz, 120 m.
+LidarModel os1_128();
+
 /// One turn that begins at `start_time` [s] while the vehicle drives: points in the scanner's frame at the time of
 /// each, in the order of firing, with intensities (0..100 diffuse, to 255 retroreflectors), times and rings.
 Survey scan_turn(const SceneView& view, const Drive& drive, const LidarModel& lidar, double start_time,

@@ -123,6 +123,7 @@ StreetLayout make_layout(const StreetOptions& options) {
   layout.axis = make_axis(random);
   layout.length = options.length;
   layout.margin = options.margin;
+  layout.is_ideal = options.is_ideal;
   layout.sides = {make_side(+1, true, random), make_side(-1, false, random)};
   for (SideLayout& side : layout.sides) {
     side.lots = make_lots(side, {layout.begin(), layout.end()}, layout.length, random);

@@ -17,6 +17,7 @@ struct StreetLayout {
   double length;                    ///< [m] cars park at stations 0 to `length`
   double margin;                    ///< [m] that the houses go on before and after
   std::array<SideLayout, 2> sides;  ///< left, right
+  bool is_ideal = true;             ///< as StreetOptions has it
 
   double begin() const { return -margin; }
   double end() const { return length + margin; }
