@@ -11,7 +11,7 @@ TEST_F(Experiment, ScansOfAnotherDayAreFoundInTheMapOfTheFirst) {
   const std::string street = path("street");
   const std::string map = path("map.vdb");
   const std::string poses = path("poses.txt");
-  json_of({"simulate", street, "--length", "60", "--margin", "30", "--scans", "20"});
+  json_of({"simulate", street, "--ideal", "--length", "60", "--margin", "30", "--scans", "20"});
   json_of({"build", street + "/epoch0/cloud.las", "-o", map});
   EXPECT_EQ(json_of({"localize", map, street + "/epoch1/scans", "-o", poses})["found"], 20);
 

@@ -26,8 +26,8 @@ class SimulateCommand : public testing::Test {
   }
 
   std::vector<std::string> quick(std::vector<std::string> more = {}) const {
-    std::vector<std::string> arguments = {"simulate", out(),     "--length", "30",        "--margin",
-                                          "5",        "--scans", "1",        "--sensors", "vlp16@0"};
+    std::vector<std::string> arguments = {"simulate", out(),     "--ideal", "--length",  "30",     "--margin",
+                                          "5",        "--scans", "1",       "--sensors", "vlp16@0"};
     arguments.insert(arguments.end(), more.begin(), more.end());
     return arguments;
   }

@@ -31,7 +31,7 @@ constexpr double kTrajectoryPeriod = 0.01;  // [s] of the mapper's poses in a fi
 DriveOptions mapper_drive(const Street& street, int epoch) {
   DriveOptions drive;
   drive.from = 0;
-  drive.to = street.layout.length;
+  drive.to = street.layouts.front().length;
   drive.speed = kMapperSpeed;
   drive.start_time = epoch * kDay + kMorning;
   drive.seed = hash(hash(street.options.seed, 71), static_cast<std::uint64_t>(epoch));
@@ -39,9 +39,9 @@ DriveOptions mapper_drive(const Street& street, int epoch) {
 }
 
 DriveOptions scan_drive(const Street& street, int epoch, double duration) {
-  const double length = std::min(kScanSpeed * duration, kScannedShare * street.layout.length);
+  const double length = std::min(kScanSpeed * duration, kScannedShare * street.layouts.front().length);
   DriveOptions drive;
-  drive.from = (street.layout.length - length) / 2;
+  drive.from = (street.layouts.front().length - length) / 2;
   drive.to = drive.from;
   drive.speed = length / duration;
   drive.shortest_time = duration;
@@ -97,22 +97,19 @@ class EpochWriter {
     return hash(hash(street_.options.seed, 80 + use), static_cast<std::uint64_t>(epoch_));
   }
 
-  Eigen::Isometry3d map_from_scene() const {
-    return Eigen::Isometry3d(Eigen::Translation3d(street_.layout.axis.origin));
-  }
+  Eigen::Isometry3d map_from_scene() const { return Eigen::Isometry3d(Eigen::Translation3d(street_.origin())); }
 
   void note_drive(const std::string& sensor, const DriveOptions& drive, const nlohmann::ordered_json& scanner) {
-    drives_.push_back(
-        {{"epoch", epoch_}, {"sensor", sensor}, {"drive", json_of_drive(drive)}, {"scanner", scanner}});
+    drives_.push_back({{"epoch", epoch_}, {"sensor", sensor}, {"drive", json_of_drive(drive)}, {"scanner", scanner}});
   }
 
   void write_cloud() {
     const DriveOptions drive_options = mapper_drive(street_, epoch_);
-    const Drive drive(street_.layout, drive_options);
+    const Drive drive(street_.layouts.front(), drive_options);
     const MapperModel mapper = vmx250();
     note_drive("mapper", drive_options, json_of_mapper(mapper));
     const Daylight light = make_daylight(street_.options.seed, epoch_);
-    const Survey survey = map_street(view_, drive, mapper, light, street_.layout.axis.origin, seed(0));
+    const Survey survey = map_street(view_, drive, mapper, light, street_.origin(), seed(0));
     result_.num_cloud_points = survey.cloud.size();
     write_las(folder_ / "cloud.las", survey.cloud, {.epsg = kEpsg});
     write_labels(folder_ / "labels" / "cloud.label", survey.truth);
@@ -132,9 +129,8 @@ class EpochWriter {
   void write_scans(const Sensor& sensor) {
     const LidarModel& lidar = *sensor.lidar;
     const auto num_scans = static_cast<std::size_t>(options_.num_scans);
-    const DriveOptions drive_options =
-        scan_drive(street_, epoch_, static_cast<double>(num_scans) * lidar.turn_time);
-    const Drive drive(street_.layout, drive_options);
+    const DriveOptions drive_options = scan_drive(street_, epoch_, static_cast<double>(num_scans) * lidar.turn_time);
+    const Drive drive(street_.layouts.front(), drive_options);
     note_drive(sensor.name, drive_options, json_of_lidar(lidar));
     std::filesystem::create_directories(folder_ / scans_name(sensor));
     std::filesystem::create_directories(folder_ / "labels" / scans_name(sensor));

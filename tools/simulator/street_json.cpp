@@ -58,11 +58,7 @@ Json json_of_house_type(const HouseType& type) {
 }
 
 Json json_of_lot(const Lot& lot) {
-  constexpr std::array<const char*, 4> kKinds = {"house", "gap", "driveway", "side street"};
-  Json json = {{"kind", kKinds[static_cast<std::size_t>(lot.kind)]},
-               {"begin", lot.along.begin},
-               {"end", lot.along.end},
-               {"seed", lot.seed}};
+  Json json = {{"kind", name_of(lot.kind)}, {"begin", lot.along.begin}, {"end", lot.along.end}, {"seed", lot.seed}};
   if (lot.kind == LotKind::kHouse) json["house_type"] = lot.house_type;
   return json;
 }
@@ -89,8 +85,9 @@ Json json_of_objects(const Street& street) {
   for (std::size_t i = 0; i < street.world.objects().size(); ++i) {
     const SceneObject& object = street.world.objects()[i];
     Json json = {{"id", i}, {"kind", object.kind}};
-    json["position"] = json_of(street.layout.axis.origin + object.position);
+    json["position"] = json_of(street.origin() + object.position);
     if (object.epoch >= 0) json["epoch"] = object.epoch;
+    if (object.moves) json["moves"] = true;
     objects.push_back(json);
   }
   return objects;
@@ -110,14 +107,14 @@ Json json_of_pulse(const PulseModel& pulse) {
 
 Json json_of_street(const Street& street) {
   Json sides = Json::array();
-  for (const SideLayout& side : street.layout.sides) sides.push_back(json_of_side(side));
+  for (const SideLayout& side : street.layouts.front().sides) sides.push_back(json_of_side(side));
   Json classes = Json::array();
-  for (const auto& [label, name] : label_names()) {
+  for (const auto& [label, name] : label_names(street.options.is_ideal)) {
     classes.push_back({{"label", static_cast<int>(label)}, {"name", name}});
   }
   return {{"options", json_of_options(street.options)},
           {"epsg", 25832},
-          {"axis", json_of_axis(street.layout.axis)},
+          {"axis", json_of_axis(street.layouts.front().axis)},
           {"sides", sides},
           {"classes", classes},
           {"objects", json_of_objects(street)}};

@@ -29,7 +29,7 @@ Json json_of_outline(const Street& street, const ParkingSpace& space) {
 
 Json json_of_space(const Street& street, std::size_t index) {
   const ParkingSpace& space = street.parking.spaces[index];
-  const SideLayout& side = street.layout.sides[space.side];
+  const SideLayout& side = street.layouts[space.street].sides[space.side];
   Json states = Json::array();
   Json vehicles = Json::array();
   for (const auto& epoch : street.parking.vehicle_in_space) {
@@ -37,7 +37,7 @@ Json json_of_space(const Street& street, std::size_t index) {
     states.push_back(vehicle ? "occupied" : "vacant");
     vehicles.push_back(vehicle ? Json(street.parking.vehicles[*vehicle].object) : Json());
   }
-  const double heading = street.layout.axis.heading_at(space.station) + space.yaw;
+  const double heading = street.layouts[space.street].axis.heading_at(space.station) + space.yaw;
   return {{"type", "Feature"},
           {"geometry", json_of_outline(street, space)},
           {"properties",
@@ -57,7 +57,7 @@ VehicleBox box_of(const Street& street, const ParkedVehicle& vehicle) {
   const Eigen::Isometry3d& frame = vehicle.scene_from_vehicle;
   const Eigen::Matrix3d& rotation = frame.linear();
   VehicleBox box;
-  box.center = street.layout.axis.origin + frame * Eigen::Vector3d(0, 0, vehicle.shape.height / 2);
+  box.center = street.origin() + frame * Eigen::Vector3d(0, 0, vehicle.shape.height / 2);
   box.size = {vehicle.shape.length, vehicle.shape.width, vehicle.shape.height};
   box.heading = std::atan2(rotation(1, 0), rotation(0, 0));
   box.pitch = -std::asin(rotation(2, 0));
@@ -66,13 +66,13 @@ VehicleBox box_of(const Street& street, const ParkedVehicle& vehicle) {
 }
 
 std::vector<Eigen::Vector3d> outline_of(const Street& street, const ParkingSpace& space) {
-  const double offset = street.layout.sides[space.side].sign * space.distance;
-  const Eigen::Isometry3d frame = street.layout.place(space.station, offset, space.yaw);
+  const double offset = street.layouts[space.street].sides[space.side].sign * space.distance;
+  const Eigen::Isometry3d frame = street.layouts[space.street].place(space.station, offset, space.yaw);
   const double x = space.length / 2;
   const double y = space.width / 2;
   std::vector<Eigen::Vector3d> corners;
   for (const auto& [along, aside] : {std::pair(x, y), std::pair(-x, y), std::pair(-x, -y), std::pair(x, -y)}) {
-    corners.emplace_back(street.layout.axis.origin + frame * Eigen::Vector3d(along, aside, 0));
+    corners.emplace_back(street.origin() + frame * Eigen::Vector3d(along, aside, 0));
   }
   return corners;
 }

@@ -69,7 +69,7 @@ struct PlanesAndDrive {
     return std::min(std::abs(wall_normal.dot(point) - wall_distance), std::abs(point.z() - ground));
   }
 
-  StreetLayout layout = make_layout({});
+  StreetLayout layout = make_layout({.is_ideal = true});
   Drive drive{layout, {.from = 50, .to = 80, .speed = 9, .seed = 3}};
   SimpleScene scene;
   Eigen::Vector3d wall_normal;

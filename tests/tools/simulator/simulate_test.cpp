@@ -30,6 +30,7 @@ SimulateOptions short_street() {
   options.street.length = 30;
   options.street.margin = 10;
   options.street.occupancy = 1;
+  options.street.is_ideal = true;
   options.num_scans = 3;
   return options;
 }

@@ -21,16 +21,16 @@ std::set<std::uint16_t> labels_of(const Street& street, const Mesh& mesh) {
 TEST(Street, HoldsEverythingAStreetHas) {
   std::set<std::uint16_t> found;
   for (const std::uint64_t seed : {1, 2}) {
-    const Street street = make_street({.seed = seed, .length = 90, .margin = 5, .num_epochs = 1});
+    const Street street = make_street({.seed = seed, .length = 90, .margin = 5, .num_epochs = 1, .is_ideal = true});
     found.merge(labels_of(street, street.mesh(0)));
   }
-  for (const auto& [label, name] : label_names()) {
+  for (const auto& [label, name] : label_names(true)) {
     EXPECT_TRUE(found.contains(static_cast<std::uint16_t>(label))) << name;
   }
 }
 
 TEST(Street, EpochsShareWhatLastsAndEveryTriangleHasAMaterialAndAnObject) {
-  const Street street = make_street({.length = 40, .margin = 5, .num_epochs = 3});
+  const Street street = make_street({.length = 40, .margin = 5, .num_epochs = 3, .is_ideal = true});
   EXPECT_EQ(street.changing.size(), 3U);
   for (int epoch = 0; epoch < 3; ++epoch) {
     const Mesh mesh = street.mesh(epoch);
