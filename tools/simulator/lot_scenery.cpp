@@ -141,7 +141,7 @@ class LotPainter {
 
   // Trees and bushes on grass, a hedge here and there along the pavement, benches.
   void draw_park() {
-    const double width = lot_.along.length(), depth = std::min(40.0, layout_.ground_depth - side_.facade_offset() - 2);
+    const double width = lot_.along.length(), depth = std::min(40.0, layout_.scenery_depth - side_.facade_offset() - 2);
     for (double x = 2; x < width; x += random_.uniform(5, 9)) {
       add_tree(moved(border_frame_, x, random_.uniform(2, 6)), random_.uniform(2, 3.6));
       add_tree(moved(border_frame_, x, random_.uniform(10, std::max(11.0, depth))), random_.uniform(2, 4));
@@ -180,7 +180,7 @@ class LotPainter {
 
   // Grass and a view; what is seen in it is far.
   void draw_open() {
-    const double width = lot_.along.length(), depth = layout_.ground_depth - side_.facade_offset();
+    const double width = lot_.along.length(), depth = layout_.scenery_depth - side_.facade_offset();
     if (random_.chance(0.5)) {
       add_fence(object("fence", border_frame_, materials().wood), width, random_.uniform(0.9, 1.3), 0.4);
     }

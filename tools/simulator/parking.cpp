@@ -107,7 +107,7 @@ void append_spots(std::vector<Spot>& spots, const StreetLayout& layout, const Si
       spots.push_back({lot.along.middle(), side.sign * (side.pavement_offset() + 2.7), -away, 4.8, 0.5});
     }
     if (lot.kind != LotKind::kSideStreet) continue;
-    for (double distance = side.facade_offset() + 10; distance < layout.ground_depth - 15; distance += 6.2) {
+    for (double distance = side.facade_offset() + 10; distance < layout.scenery_depth - 15; distance += 6.2) {
       const bool is_left = random.chance(0.5);
       const double station = is_left ? lot.along.begin + 1.3 : lot.along.end - 1.3;
       spots.push_back({station, side.sign * distance, is_left ? away : -away, 5.5, 0.45});
@@ -120,8 +120,8 @@ void append_spots(std::vector<Spot>& spots, const StreetLayout& layout, const Si
       spots.push_back({station, side.sign * beside, along, 9.0, 0.3});
     }
   }
-  // A delivery in the second row, on the side that the surveys do not drive on.
-  if (side.sign > 0 && random.chance(0.5)) {
+  // A delivery in the second row, on the side that the surveys do not drive on; a quarter's drive uses both.
+  if (side.sign > 0 && !layout.axis.hills && random.chance(0.5)) {
     spots.push_back({random.uniform(0.1, 0.9) * layout.length, side.lane_width - 1.1, pi, 6.5, 0.5});
   }
 }

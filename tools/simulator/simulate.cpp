@@ -18,20 +18,20 @@ SimulateResult simulate(const std::filesystem::path& out, const SimulateOptions&
   check_output_folder(out);
   AtomicFolder folder(out);
   const std::filesystem::path& inside = folder.temporary_path();
-  const Street street = make_street(options.street);
+  Street street = make_street(options.street);
 
   SimulateResult result;
-  nlohmann::ordered_json drives = nlohmann::ordered_json::array();
+  SimulationRecord record;
   for (int epoch = 0; epoch < options.street.num_epochs; ++epoch) {
-    result.epochs.push_back(write_epoch(inside / fmt::format("epoch{}", epoch), street, epoch, options, drives));
+    result.epochs.push_back(write_epoch(inside / fmt::format("epoch{}", epoch), street, epoch, options, record));
   }
-  write_spaces(inside / "spaces.geojson", street);
+  write_spaces(inside / "spaces.geojson", street, record.seen);
   result.num_spaces = street.parking.spaces.size();
   result.num_changed_voxels = write_changes(inside / "changes.csv", street);
 
   nlohmann::ordered_json json = {{"generator", kGenerator}};
   json.update(json_of_street(street));
-  json["surveys"] = drives;
+  json["surveys"] = record.drives;
   write_file(inside / "street.json", json.dump(1) + "\n");
   folder.commit();
   return result;

@@ -31,6 +31,9 @@ void SimulateOptions::check() const {
   if (num_scans < 1 || num_scans > 5000) {
     throw std::invalid_argument(fmt::format("number of scans {}, allowed are 1 to 5000", num_scans));
   }
+  if (!(rain >= 0 && rain <= 50))
+    throw std::invalid_argument(fmt::format("rain {} mm/h, allowed are 0 to 50 mm/h", rain));
+  if (rain > 0 && street.is_ideal) throw std::invalid_argument("on an ideal street no rain falls");
   for (const SensorUse& use : sensors) check_sensor_use(use, street.num_epochs);
 }
 

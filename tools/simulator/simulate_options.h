@@ -15,6 +15,7 @@ struct SimulateOptions {
   StreetOptions street;
   std::vector<SensorUse> sensors;  ///< empty: the mapper in epoch 0, the VLP-16 in every later one
   int num_scans = 101;             ///< 1..5000 turns in an epoch
+  double rain = 0;                 ///< [mm/h] 0..50 that fall during the surveys, not on an ideal street
   /// Called once for each of num_steps() steps, by any thread.
   std::function<void()> on_step = [] {};
 

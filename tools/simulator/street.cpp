@@ -85,7 +85,18 @@ std::vector<const ParkedVehicle*> Street::vehicles(int epoch) const {
 }
 
 Street make_street(const StreetOptions& options) {
-  Street street{options, {make_layout(options)}, {}, {}, {}, {}, {}, {}};
+  options.check();
+  Street street;
+  street.options = options;
+  if (options.is_quarter()) {
+    const Quarter quarter = make_quarter(options);
+    street.layouts = quarter.layouts;
+    street.crossings = quarter.crossings;
+    street.tour = quarter.tour;
+    add_crossings(street.world, street.lasting, quarter);
+  } else {
+    street.layouts = {make_layout(options)};
+  }
   for (std::size_t i = 0; i < street.layouts.size(); ++i) draw_lasting(street, i);
   for (std::size_t i = 0; i < street.layouts.size(); ++i) {
     append_parking(street.parking, street.world, street.layouts[i], i, options);

@@ -5,6 +5,7 @@
 
 #include "tools/simulator/mesh.h"
 #include "tools/simulator/parking.h"
+#include "tools/simulator/quarter.h"
 #include "tools/simulator/street_layout.h"
 #include "tools/simulator/things/placing.h"
 #include "tools/simulator/vegetation.h"
@@ -16,6 +17,8 @@ namespace vdbmap::simulator {
 struct Street {
   StreetOptions options;
   std::vector<StreetLayout> layouts;  ///< of one origin
+  std::vector<Crossing> crossings;    ///< of a quarter
+  std::vector<Leg> tour;              ///< through a quarter
   World world;
   std::vector<Tree> trees;
   Parking parking;
@@ -28,6 +31,9 @@ struct Street {
 
   /// Of the scene [m, EPSG:25832 and height].
   const Eigen::Vector3d& origin() const { return layouts.front().axis.origin; }
+
+  /// Up the street, or the tour. The street must outlive it.
+  Route route() const { return tour.empty() ? Route(layouts.front()) : Route(layouts, tour); }
 
   /// The vehicles that stand there in an epoch, in the order of their spaces, then those in none.
   std::vector<const ParkedVehicle*> vehicles(int epoch) const;

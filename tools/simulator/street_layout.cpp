@@ -115,6 +115,7 @@ StreetLayout make_rough_layout(const StreetOptions& options) {
   layout.margin = options.margin;
   layout.is_ideal = false;
   layout.ground_depth = 130;
+  layout.scenery_depth = 130;
   layout.sides = {make_rough_side(+1, true, random), make_rough_side(-1, false, random)};
   plan_rough_lots(layout, random);
   return layout;

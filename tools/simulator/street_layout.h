@@ -19,6 +19,7 @@ struct StreetLayout {
   std::array<SideLayout, 2> sides;  ///< left, right
   bool is_ideal = true;             ///< as StreetOptions has it
   double ground_depth = 70;         ///< [m] from the axis that its ground reaches
+  double scenery_depth = 70;        ///< [m] from the axis that what stands on it reaches; not on an ideal street
 
   double begin() const { return -margin; }
   double end() const { return length + margin; }
