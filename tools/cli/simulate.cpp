@@ -55,16 +55,17 @@ void add_options(CLI::App& app, SimulateCommandOptions& options) {
       ->capture_default_str();
   app.add_option("--quarter", options.quarter,
                  "Blocks of a quarter of streets, 1 to 6 along its rows and its columns, instead of one street: one "
-                 "drive goes through all of it, its scans spread over the way")
+                 "drive goes through all of it, with loops")
       ->type_name("NxM");
   app.add_option("--sensors", options.sensors,
                  "What drives up the street, in every epoch or in one: mapper (cloud.las), vlp16 (scans/), hdl64 "
                  "(scans_hdl64/), hdl32, os1-128, or a JSON file that describes scanners")
       ->type_name("NAME[@EPOCH],... or FILE.json")
       ->default_str("mapper@0, vlp16 later");
-  app.add_option("--scans", simulate.num_scans, "Scans that each scanner takes in an epoch, 10 a second, 1 to 5000")
+  app.add_option("--scans", simulate.num_scans,
+                 "Scans that each scanner takes in an epoch, one turn after the other, 1 to 5000")
       ->type_name("N")
-      ->capture_default_str();
+      ->default_str("101, in a quarter all of its tour");
   app.add_option("--rain", simulate.rain, "Rain during the surveys [mm/h], 0 to 50: specks in the air, wet ground")
       ->type_name("R")
       ->capture_default_str();

@@ -46,23 +46,25 @@ DriveOptions mapper_drive(const Street& street, const Route& route, int epoch) {
   return drive;
 }
 
-// Up the middle of a street in the time that the scans take, or all the way through a quarter.
-DriveOptions scan_drive(const Street& street, const Route& route, int epoch, double duration) {
+// Up the middle of a street in the time that the scans take; through a quarter for that time, or all the way.
+DriveOptions scan_drive(const Street& street, const Route& route, int epoch, std::optional<double> duration) {
   DriveOptions drive;
   drive.start_time = epoch * kDay + kMorning + 600;  // after the mapper
   drive.seed = hash(hash(street.options.seed, 72), static_cast<std::uint64_t>(epoch));
   if (!street.tour.empty()) {
     drive.from = route.begin() + kFromTourEnd;
-    drive.to = route.end() - kFromTourEnd;
+    drive.to = duration ? drive.from : route.end() - kFromTourEnd;
+    drive.shortest_time = duration.value_or(0);
     drive.speed = kScanSpeed;
     return drive;
   }
   const double street_length = street.layouts.front().length;
-  const double length = std::min(kScanSpeed * duration, kScannedShare * street_length);
+  const double time = duration.value();
+  const double length = std::min(kScanSpeed * time, kScannedShare * street_length);
   drive.from = (street_length - length) / 2;
   drive.to = drive.from;
-  drive.speed = length / duration;
-  drive.shortest_time = duration;
+  drive.speed = length / time;
+  drive.shortest_time = time;
   return drive;
 }
 
@@ -224,20 +226,20 @@ class EpochWriter {
 
   void write_scans(const Sensor& sensor) {
     const LidarModel lidar = lidar_of(sensor);
-    const auto num_scans = static_cast<std::size_t>(options_.num_scans);
+    const bool takes_all = !street_.tour.empty() && !options_.num_scans;
+    const double wanted = options_.num_scans.value_or(kNumScans);
     const DriveOptions drive_options =
-        scan_drive(street_, route_, epoch_, static_cast<double>(num_scans) * lidar.turn_time);
+        scan_drive(street_, route_, epoch_, takes_all ? std::nullopt : std::optional(wanted * lidar.turn_time));
     const Drive drive(route_, drive_options);
+    const double turns = std::floor((drive.end_time() - drive.start_time()) / lidar.turn_time);
+    const auto num_scans = static_cast<std::size_t>(takes_all ? turns : wanted);
     note_drive(sensor.name, drive_options, json_of_lidar(lidar));
     begin_drive(drive, drive_options, sensor.name);
     std::filesystem::create_directories(folder_ / scans_name(sensor));
     std::filesystem::create_directories(folder_ / "labels" / scans_name(sensor));
 
-    // On a tour the scans are turns far apart.
-    const double turns = std::floor((drive.end_time() - drive.start_time()) / lidar.turn_time);
-    const double step = street_.tour.empty() ? 1.0 : std::max(1.0, turns / static_cast<double>(num_scans));
     const auto start_of = [&](std::size_t index) {
-      return drive.start_time() + std::floor(step * static_cast<double>(index)) * lidar.turn_time;
+      return drive.start_time() + static_cast<double>(index) * lidar.turn_time;
     };
     ScanPoses poses(record_.mapped);
     for (std::size_t begin = 0; begin < num_scans; begin += kScansAtOnce) {
@@ -254,6 +256,7 @@ class EpochWriter {
     result_.num_scans += num_scans;
     poses.write(folder_, poses_name(sensor));
     end_drive(drive, sensor.name, field_of(lidar));
+    if (!street_.tour.empty()) options_.on_step();
   }
 
   Survey take_scan(const Sensor& sensor, const LidarModel& lidar, const Drive& drive, double start,
@@ -262,7 +265,7 @@ class EpochWriter {
     const std::string name = fmt::format("{:06}", index);
     write_pcd(folder_ / scans_name(sensor) / (name + ".pcd"), scan.cloud);
     write_labels(folder_ / "labels" / scans_name(sensor) / (name + ".label"), scan.truth);
-    options_.on_step();
+    if (street_.tour.empty()) options_.on_step();
     return scan;
   }
 

@@ -20,7 +20,7 @@ std::size_t SimulateOptions::num_steps() const {
   std::size_t count = 0;
   for (int epoch = 0; epoch < street.num_epochs; ++epoch) {
     for (const Sensor& sensor : sensors_of_epoch(sensors, epoch)) {
-      count += sensor.is_mapper() ? 1 : static_cast<std::size_t>(num_scans);
+      count += sensor.is_mapper() || street.is_quarter() ? 1 : static_cast<std::size_t>(num_scans.value_or(kNumScans));
     }
   }
   return count;
@@ -28,8 +28,8 @@ std::size_t SimulateOptions::num_steps() const {
 
 void SimulateOptions::check() const {
   street.check();
-  if (num_scans < 1 || num_scans > 5000) {
-    throw std::invalid_argument(fmt::format("number of scans {}, allowed are 1 to 5000", num_scans));
+  if (num_scans && (*num_scans < 1 || *num_scans > 5000)) {
+    throw std::invalid_argument(fmt::format("number of scans {}, allowed are 1 to 5000", *num_scans));
   }
   if (!(rain >= 0 && rain <= 50))
     throw std::invalid_argument(fmt::format("rain {} mm/h, allowed are 0 to 50 mm/h", rain));

@@ -3,6 +3,7 @@
 
 #include <cstddef>
 #include <functional>
+#include <optional>
 #include <vector>
 
 #include "tools/simulator/sensor_use.h"
@@ -10,13 +11,18 @@
 
 namespace vdbmap::simulator {
 
+/// Turns of a scanner in an epoch on one street.
+inline constexpr int kNumScans = 101;
+
 /// What a simulation makes.
 struct SimulateOptions {
   StreetOptions street;
   std::vector<SensorUse> sensors;  ///< empty: the mapper in epoch 0, the VLP-16 in every later one
-  int num_scans = 101;             ///< 1..5000 turns in an epoch
-  double rain = 0;                 ///< [mm/h] 0..50 that fall during the surveys, not on an ideal street
-  /// Called once for each of num_steps() steps, by any thread.
+  /// 1..5000 turns in an epoch, one after the other; where nothing is given kNumScans, in a quarter all that its tour
+  /// takes.
+  std::optional<int> num_scans = std::nullopt;
+  double rain = 0;  ///< [mm/h] 0..50 that fall during the surveys, not on an ideal street
+  /// Called once for each of num_steps() steps, by any thread: a scan, a mapper's drive, in a quarter any drive.
   std::function<void()> on_step = [] {};
 
   std::size_t num_steps() const;

@@ -168,7 +168,7 @@ class Planner {
     return kWalkers.front();
   }
 
-  Site site(const Brush& brush) { return {brush, world_, random_, 2, false}; }
+  Site site(const Brush& brush) { return {brush, world_, random_, 2, 1, false}; }
 
   World& world_;
   const Route& route_;

@@ -15,7 +15,10 @@ struct ParkedStreet {
   World world;
   Parking parking;
 
-  explicit ParkedStreet(const StreetOptions& options) : layout(make_layout(options)) {
+  // An ideal one.
+  explicit ParkedStreet(StreetOptions options) {
+    options.is_ideal = true;
+    layout = make_layout(options);
     parking = make_parking(world, layout, options);
   }
 };
@@ -87,8 +90,8 @@ TEST(Parking, CarsStandInTheirSpacesAndKeepTheirPlaceWhileTheyStay) {
       const ParkedVehicle& vehicle = street.parking.vehicles[*epoch[i]];
       const ParkingSpace& space = street.parking.spaces[i];
       EXPECT_EQ(vehicle.space, i);
-      const Eigen::Vector2d middle = street.layouts.front().axis.point(
-          space.station, street.layouts.front().sides[space.side].sign * space.distance);
+      const Eigen::Vector2d middle =
+          street.layout.axis.point(space.station, street.layout.sides[space.side].sign * space.distance);
       EXPECT_LT((vehicle.scene_from_vehicle.translation().head<2>() - middle).norm(), 0.8);
     }
   }
@@ -100,8 +103,8 @@ TEST(Parking, WheelsStandOnTheGround) {
     for (const ParkedVehicle& vehicle : street.parking.vehicles) {
       const Eigen::Isometry3d& frame = vehicle.scene_from_vehicle;
       const ParkingSpace& space = street.parking.spaces[vehicle.space];
-      const SideLayout& side = street.layouts.front().sides[space.side];
-      const double ground = street.layouts.front().ground_height(space.station, side.sign * space.distance);
+      const SideLayout& side = street.layout.sides[space.side];
+      const double ground = street.layout.ground_height(space.station, side.sign * space.distance);
       EXPECT_NEAR(frame.translation().z(), ground, 0.09);  // between road and kerb where it stands on both
       const double roll = std::asin(frame.linear()(2, 1));
       const bool is_half = side.parking == ParkingKind::kHalfOnPavement;

@@ -22,7 +22,7 @@ std::span<const ThingKind> thing_kinds() {
       {"clipped shrub", kVegetation, kAtKerb, kYears, 0.8, 4.6, 1.4, draw_car_sized_shrub},
       {"bed", kVegetation, kAtKerb, kYears, 1.2, 2.6, 1.0, draw_bed, kSheds},
       {"ivy", kVegetation, kAtWall, kYears, 1.0, 3.0, 0.3, draw_ivy},
-      {"tree pit", kVegetation, kAtKerb, kYears, 0.8, 2.0, 1.4, draw_tree_pit, kSheds},
+      {"tree pit", kTerrain, kAtKerb, kYears, 0.8, 2.0, 1.4, draw_tree_pit, kSheds},
       {"trunk", kTrunk, kAtKerb, kYears, 0.5, 1.5, 1.0, draw_thick_trunk},
       {"conifer", kVegetation, kInGarden, kYears, 1.2, 2.5, 2.5, draw_conifer},
       {"tall grass", kVegetation, kInGarden, kYears, 2.0, 3.0, 1.0, draw_tall_grass},

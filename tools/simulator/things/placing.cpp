@@ -144,7 +144,7 @@ class SidePlacer {
 void draw_thing(World& world, Mesh& mesh, const PlacedThing& thing, bool is_winter) {
   Random random(thing.seed);
   const Brush brush{&mesh, thing.scene_from_thing, world.standard().stone, thing.object};
-  thing.kind->draw({brush, world, random, thing.kind->length, is_winter});
+  thing.kind->draw({brush, world, random, thing.kind->length, thing.kind->width, is_winter});
 }
 
 }  // namespace

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "tools/simulator/things/plants.h"
 
+#include <algorithm>
 #include <cmath>
 #include <numbers>
 
@@ -37,15 +38,15 @@ void draw_clipped_hedge(const Site& site) {
 void draw_wild_bushes(const Site& site) {
   const std::size_t count = 1 + site.random.index(3);
   for (std::size_t i = 0; i < count; ++i) {
-    const double radius = site.random.uniform(0.4, 1.3);
-    const double x = count == 1 ? 0 : site.random.uniform(-0.5, 0.5) * site.length;
+    const double radius = std::min(0.65 * site.width, site.random.uniform(0.4, 1.3));
+    const double x = count == 1 ? 0 : site.random.uniform(-0.3, 0.3) * site.length;
     Site bush = site;
     bush.brush = site.brush.at({x, site.random.uniform(-0.3, 0.3), 0}, site.random.uniform(0, 6));
     ShrubShape shape{{2 * radius, 2 * radius * site.random.uniform(0.7, 1.1), radius * site.random.uniform(1.1, 2.1)}};
     shape.exponent = site.random.uniform(1.6, 2.6);
     shape.leaf_size = site.random.uniform(0.06, 0.12);
     shape.depth = site.random.uniform(0.15, 0.45);
-    shape.density = site.random.uniform(20, 60);
+    shape.density = site.random.uniform(80, 200);
     shape.wave = site.random.uniform(0.12, 0.35);
     draw_shrub(bush, shape, false);
   }
@@ -56,7 +57,7 @@ void draw_car_sized_shrub(const Site& site) {
   shape.exponent = site.random.uniform(2.5, 7);
   shape.leaf_size = site.random.uniform(0.05, 0.09);
   shape.depth = site.random.uniform(0.05, 0.2);
-  shape.density = site.random.uniform(40, 90);
+  shape.density = site.random.uniform(200, 350);
   shape.wave = site.random.uniform(0.02, 0.12);
   draw_shrub(site, shape, true);
 }
@@ -77,7 +78,7 @@ void draw_bed(const Site& site) {
   shape.base = height - 0.06;
   shape.leaf_size = site.random.uniform(0.05, 0.1);
   shape.depth = 0.2;
-  shape.density = site.random.uniform(25, 60);
+  shape.density = site.random.uniform(80, 200);
   shape.wave = 0.3;
   draw_shrub(site, shape, site.random.chance(0.5));
 }
@@ -108,7 +109,7 @@ void draw_tree_pit(const Site& site) {
   }
   if (site.random.chance(0.4)) return;
   ShrubShape shape{{1.5, 1.5, site.random.uniform(0.2, 0.6)}};
-  shape.density = 30;
+  shape.density = 100;
   shape.wave = 0.3;
   draw_shrub(site, shape, false);
 }

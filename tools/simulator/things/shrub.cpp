@@ -10,7 +10,7 @@ namespace {
 
 using Point = Eigen::Vector3d;
 
-constexpr int kMostLeaves = 12'000;     // of one plant
+constexpr int kMostLeaves = 20'000;     // of one plant
 constexpr double kTwigDistance = 0.35;  // [m] between twigs on the ground
 
 Point random_vector(Random& random) { return {random.normal(0, 1), random.normal(0, 1), random.normal(0, 1)}; }
@@ -40,7 +40,7 @@ double swing(const Point& p, const Point& size, double phase) {
 
 void add_leaf(const Brush& brush, const Point& center, double size, Random& random) {
   const Point along = size / 2 * random_vector(random).normalized() * random.uniform(0.7, 1.3);
-  const Point across = 0.35 * size * along.cross(random_vector(random)).normalized();
+  const Point across = 0.5 * size * along.cross(random_vector(random)).normalized();
   add_quad(brush, center - along, center + across, center + along, center - across);
 }
 
@@ -82,9 +82,9 @@ void add_shrub(const Brush& leaves, MaterialId twigs, const ShrubShape& shape, R
 void add_rough_hedge(const Brush& leaves, MaterialId twigs, const Eigen::Vector3d& size, Random& random) {
   ShrubShape shape{size};
   shape.exponent = random.uniform(4, 9);
-  shape.leaf_size = random.uniform(0.05, 0.09);
+  shape.leaf_size = random.uniform(0.06, 0.1);
   shape.depth = random.uniform(0.04, 0.16);
-  shape.density = random.uniform(40, 90);
+  shape.density = random.uniform(200, 350);
   shape.wave = random.uniform(0.02, 0.10);
   add_shrub(leaves.at({size.x() / 2, size.y() / 2, 0}), twigs, shape, random);
 }
@@ -93,9 +93,9 @@ void add_rough_bush(const Brush& leaves, MaterialId twigs, double radius, Random
   ShrubShape shape{{2 * radius * random.uniform(0.8, 1.4), 2 * radius * random.uniform(0.8, 1.2),
                     radius * random.uniform(1.0, 1.9)}};
   shape.exponent = random.uniform(1.6, 3);
-  shape.leaf_size = random.uniform(0.05, 0.11);
+  shape.leaf_size = random.uniform(0.06, 0.11);
   shape.depth = random.uniform(0.12, 0.4);
-  shape.density = random.uniform(25, 70);
+  shape.density = random.uniform(90, 220);
   shape.wave = random.uniform(0.08, 0.3);
   add_shrub(leaves, twigs, shape, random);
 }

@@ -12,7 +12,7 @@ struct ShrubShape {
   double exponent = 2.5;    ///< 2: round; 8: clipped to a box
   double leaf_size = 0.07;  ///< [m] of a leaf or a sprig of small ones
   double depth = 0.15;      ///< [m] that leaves stand inwards, on average
-  double density = 90;      ///< leaves of 0.1 m a square metre of surface; smaller ones are as many more
+  double density = 200;     ///< leaves of 0.1 m a square metre of surface; smaller ones are as many more
   double wave = 0.05;       ///< share by which the surface swings in and out
   double base = 0;          ///< [m] height of its foot
   double leaf_share = 1;    ///< of the leaves that hang: few in winter

@@ -12,6 +12,7 @@ struct Site {
   World& world;    ///< for materials
   Random& random;  ///< the thing's own
   double length;   ///< [m] of the room that it has along the street
+  double width;    ///< [m] across
   bool is_winter;  ///< leaves are off
 
   /// A brush of a new material.

@@ -158,7 +158,7 @@ void draw_construction_fence(const Site& site) {
   const int fields = std::max(1, static_cast<int>(site.length / 3.5));
   double x = -1.75 * fields, y = 0;
   for (int field = 0; field < fields; ++field) {
-    const double yaw = site.random.normal(0, 0.12);
+    const double yaw = 0.12 * site.random.uniform(-1, 1);
     const Brush at = steel.at({x, y, 0}, yaw);
     for (const double end : {0.0, 3.45}) add_tube(at, {{end, 0, 0.05}, {end, 0, 2.0}, 0.02, 0.02, 6});
     for (const double z : {0.15, 2.0}) add_tube(at, {{0, 0, z}, {3.45, 0, z}, 0.02, 0.02, 6});
