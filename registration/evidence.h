@@ -36,7 +36,7 @@ double surface_agreement(std::span<const SurfacePiece> pieces, const VoxelMap& m
 /// What speaks for and against points lying in a map as a pose says.
 struct Evidence {
   std::size_t num_points = 0;
-  double overlap = 0;       ///< share of the points that have the map within a voxel of the coarsest level
+  double overlap = 0;           ///< share of the points that have the map within a voxel of the coarsest level
   double on_surface_share = 0;  ///< of the overlapping points: within 0.15 m of a plane of the finest level
   std::size_t num_rays = 0;
   double blocked_share = 0;  ///< of the rays: would have had to pass through a solid surface of the map

@@ -230,7 +230,7 @@ time_command() {
 # Whole commands on a simulated street, and what huge pages save them.
 measure_commands() {
   local street=$results/street map=$results/street.vdb command
-  vdbmap simulate "$street" --seed 1
+  vdbmap simulate "$street" --seed 1 --ideal
   vdbmap build "$street/epoch0/cloud.las" -o "$map"
   local commands=(
     "build $street/epoch0/cloud.las -o $results/again.vdb"

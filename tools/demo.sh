@@ -53,7 +53,7 @@ draw_pictures() {
 
 demonstrate_on_simulated_street() {
   local street=demo/street
-  vdbmap simulate "$street" --seed 1
+  vdbmap simulate "$street" --seed 1 --ideal
   vdbmap build "$street/epoch0/cloud.las" --labels "$street/epoch0/labels/cloud.label" -o demo/map.vdb
   look_into_map
   vdbmap localize demo/map.vdb "$street/epoch1/scans" -o demo/poses.txt --report demo/report.json

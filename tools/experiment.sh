@@ -15,7 +15,7 @@ vdbmap() { build/release/bin/vdbmap "$@"; }
 
 run_street() {
   local street=$work/street$1
-  vdbmap simulate "$street" --seed "$1" > /dev/null
+  vdbmap simulate "$street" --seed "$1" --ideal > /dev/null
   vdbmap build "$street/epoch0/cloud.las" -o "$street.vdb" > /dev/null
   # 1: not a single scan found, which the table then says.
   vdbmap localize "$street.vdb" "$street/epoch1/scans" -o "$street.txt" --report "$street.report.json" || (($? == 1))

@@ -105,7 +105,7 @@ class Street:
         self.vdbmap, self.folder, self.seed = vdbmap, folder, seed
         if not (folder / "street.json").exists():
             sensors = "mapper@0,vlp16@1,hdl64@1"
-            self.call("simulate", folder, "--seed", seed, "--sensors", sensors)
+            self.call("simulate", folder, "--seed", seed, "--ideal", "--sensors", sensors)
         self.made = folder.parent / f"{folder.name}_made"
         self.made.mkdir(exist_ok=True)
 

@@ -52,7 +52,7 @@ struct OdometryStep {
   bool has_time = false;       ///< whether the time stamps could be used, `motion.reference_time` among them
   std::string time_problem;    ///< why the scan was not deskewed although it has time stamps
   double sigma = 0;            ///< [m] the adaptive threshold used
-  double overlap_share = 0;     ///< of the points aligned: within half a voxel of the map
+  double overlap_share = 0;    ///< of the points aligned: within half a voxel of the map
   std::size_t num_points = 0;  ///< aligned
   int num_iterations = 0;
   bool was_refound = false;  ///< the scan lay far from where its motion led to; a wider search found it

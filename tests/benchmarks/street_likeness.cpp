@@ -85,7 +85,7 @@ std::vector<LabelledScan> simulated_scans(std::uint64_t seed, std::size_t count)
   const simulator::Street street = simulator::make_street({.seed = seed, .num_epochs = 1});
   const simulator::Mesh mesh = street.mesh(0);
   const simulator::RayCaster caster(mesh);
-  const simulator::Drive drive(street.layout, {.from = 70, .to = 110, .seed = seed});
+  const simulator::Drive drive(street.layouts.front(), {.from = 70, .to = 110, .seed = seed});
   std::vector<LabelledScan> scans(count);
   parallel_for(count, [&](std::size_t i) {
     const simulator::Survey survey = scan_turn({mesh, street.world.materials(), caster}, drive, simulator::hdl64(),

@@ -28,8 +28,8 @@ TEST(Evidence, SpeaksForTheTruePose) {
   const Evidence evidence = weigh(c.points, c.rays, c.map, c.map_from_scan);
   EXPECT_EQ(evidence.num_points, c.points.size());
   EXPECT_EQ(evidence.overlap, 1);
-  EXPECT_GT(evidence.on_surface_share, 0.9);    // edges of boxes are not flat
-  EXPECT_LT(evidence.blocked_share, 0.02);  // voxels stand out by up to 10 cm at corners
+  EXPECT_GT(evidence.on_surface_share, 0.9);  // edges of boxes are not flat
+  EXPECT_LT(evidence.blocked_share, 0.02);    // voxels stand out by up to 10 cm at corners
 }
 
 TEST(Evidence, SpeaksAgainstAPoseBeyondTheFacade) {

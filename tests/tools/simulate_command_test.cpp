@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
+#include <algorithm>
 #include <csignal>
 #include <filesystem>
 #include <iterator>
@@ -26,8 +27,9 @@ class SimulateCommand : public testing::Test {
   }
 
   std::vector<std::string> quick(std::vector<std::string> more = {}) const {
-    std::vector<std::string> arguments = {"simulate", out(),     "--length", "30",        "--margin",
-                                          "5",        "--scans", "1",        "--sensors", "vlp16@0"};
+    std::vector<std::string> arguments = {"simulate", out(), "--ideal", "--length", "30",
+                                          "--margin", "5",   "--scans", "1"};
+    if (std::ranges::find(more, "--sensors") == more.end()) more.insert(more.end(), {"--sensors", "vlp16@0"});
     arguments.insert(arguments.end(), more.begin(), more.end());
     return arguments;
   }
@@ -46,6 +48,12 @@ TEST_F(SimulateCommand, RefusesWrongOptionsInOneLine) {
       {{"--sensors", "radar"}, "unknown sensor 'radar'"},
       {{"--sensors", "vlp16@7"}, "there are epochs 0 to 1"},
       {{"--occupancy", "2"}, "occupancy 2"},
+      {{"--rain", "-1"}, "rain -1 mm/h, allowed are 0 to 50 mm/h"},
+      {{"--rain", "5", "--ideal"}, "on an ideal street no rain falls"},
+      {{"--quarter", "3"}, "--quarter '3' is not of the form 3x2"},
+      {{"--quarter", "0x2"}, "allowed are 1 to 6"},
+      {{"--quarter", "9x2"}, "columns of the quarter 9, allowed are 1 to 6"},
+      {{"--quarter", "2x2", "--ideal"}, "a quarter is never ideal"},
   };
   for (const auto& [options, part] : refused) {
     std::vector<std::string> arguments = {"simulate", out()};
@@ -95,6 +103,17 @@ TEST_F(SimulateCommand, LeavesNothingWhenInterrupted) {
   const auto result = test::run_command(VDBMAP_COMMAND, {"simulate", out(), "--length", "300"}, options);
   EXPECT_EQ(result.exit_code, 128 + SIGINT);
   EXPECT_EQ(num_entries(), 0U);
+}
+
+TEST_F(SimulateCommand, TakesScannersOfAFile) {
+  const std::string file = folder_ / "sensors.json";
+  write_raw(file, R"([{"name": "tiny", "beams": 4, "firings": 360, "epoch": 0}])");
+  const auto result = vdbmap(quick({"--sensors", file}));
+  EXPECT_EQ(result.exit_code, 0) << result.err;
+  EXPECT_TRUE(std::filesystem::exists(out() + "/epoch0/scans_tiny/000000.pcd"));
+  EXPECT_TRUE(std::filesystem::exists(out() + "/epoch0/poses_tiny.txt"));
+  write_raw(file, "[{}]");
+  expect_error(vdbmap(quick({"--sensors", file})), ExitCode::kBadInput, "sensors.json: sensor 0 wants a text");
 }
 
 }  // namespace

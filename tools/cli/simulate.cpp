@@ -11,6 +11,8 @@
 #include "tools/cli/command.h"
 #include "tools/cli/output.h"
 #include "tools/cli/progress.h"
+#include "tools/simulator/sensor_file.h"
+#include "vdbmap/io/file/text.h"
 
 namespace vdbmap::cli {
 namespace {
@@ -23,6 +25,7 @@ struct SimulateCommandOptions {
   std::filesystem::path out;
   SimulateOptions simulate;
   std::string sensors;
+  std::string quarter;
 };
 
 // A negative number would turn into a huge one.
@@ -50,14 +53,24 @@ void add_options(CLI::App& app, SimulateCommandOptions& options) {
   app.add_option("--epochs", simulate.street.num_epochs, "Days on which the street is visited, 1 to 20")
       ->type_name("N")
       ->capture_default_str();
+  app.add_option("--quarter", options.quarter,
+                 "Blocks of a quarter of streets, 1 to 6 along its rows and its columns, instead of one street: one "
+                 "drive goes through all of it, with loops")
+      ->type_name("NxM");
   app.add_option("--sensors", options.sensors,
                  "What drives up the street, in every epoch or in one: mapper (cloud.las), vlp16 (scans/), hdl64 "
-                 "(scans_hdl64/)")
-      ->type_name("NAME[@EPOCH],...")
+                 "(scans_hdl64/), hdl32, os1-128, or a JSON file that describes scanners")
+      ->type_name("NAME[@EPOCH],... or FILE.json")
       ->default_str("mapper@0, vlp16 later");
-  app.add_option("--scans", simulate.num_scans, "Scans that vlp16 and hdl64 take in an epoch, 10 a second, 1 to 5000")
+  app.add_option("--scans", simulate.num_scans,
+                 "Scans that each scanner takes in an epoch, one turn after the other, 1 to 5000")
       ->type_name("N")
+      ->default_str("101, in a quarter all of its tour");
+  app.add_option("--rain", simulate.rain, "Rain during the surveys [mm/h], 0 to 50: specks in the air, wet ground")
+      ->type_name("R")
       ->capture_default_str();
+  app.add_flag("--ideal", simulate.street.is_ideal,
+               "A street where nothing moves, hedges are neat, and no survey has an error");
   app.add_option("--occupancy", simulate.street.occupancy, "Share of the parking spaces that is taken, 0 to 1")
       ->type_name("S")
       ->capture_default_str();
@@ -92,12 +105,34 @@ std::string text_of_epoch(std::size_t number, const EpochResult& epoch) {
 }
 
 std::string text_of(const SimulateCommandOptions& options, const SimulateResult& result, double seconds) {
-  std::string text = fmt::format("{}: street of {} m, seed {}, made in {:.1f} s\n", options.out.string(),
-                                 options.simulate.street.length, options.simulate.street.seed, seconds);
+  const std::string place = options.quarter.empty() ? fmt::format("street of {} m", options.simulate.street.length)
+                                                    : fmt::format("quarter of {} blocks", options.quarter);
+  std::string text = fmt::format("{}: {}, seed {}, made in {:.1f} s\n", options.out.string(), place,
+                                 options.simulate.street.seed, seconds);
   text += fmt::format("spaces     {} for parking\n", result.num_spaces);
   text += fmt::format("changes    {} voxels of 10 cm\n", result.num_changed_voxels);
   for (std::size_t i = 0; i < result.epochs.size(); ++i) text += text_of_epoch(i, result.epochs[i]);
   return text;
+}
+
+// "3x2", or nothing.
+void set_quarter(simulator::StreetOptions& street, const std::string& text) {
+  if (text.empty()) return;
+  const std::size_t x = text.find('x');
+  const auto columns = parse_count(text.substr(0, x));
+  const auto rows = x == std::string::npos ? std::nullopt : parse_count(text.substr(x + 1));
+  if (!columns || !rows || *columns > 1000 || *rows > 1000) {
+    throw std::invalid_argument("--quarter " + vdbmap::quoted(text) + " is not of the form 3x2");
+  }
+  street.quarter_columns = static_cast<int>(*columns);
+  street.quarter_rows = static_cast<int>(*rows);
+  if (street.quarter_columns == 0)
+    throw std::invalid_argument("--quarter 0: columns of the quarter, allowed are 1 to 6");
+}
+
+std::vector<simulator::SensorUse> sensors_of(const std::string& text) {
+  if (text.ends_with(".json")) return simulator::read_sensors(text);
+  return simulator::parse_sensors(text);
 }
 
 SimulateResult run_with_progress(const std::filesystem::path& out, SimulateOptions options,
@@ -111,7 +146,8 @@ SimulateResult run_with_progress(const std::filesystem::path& out, SimulateOptio
 ExitCode run(const SimulateCommandOptions& options, const CommonOptions& common) {
   const auto start = std::chrono::steady_clock::now();
   SimulateOptions simulate = options.simulate;
-  if (!options.sensors.empty()) simulate.sensors = simulator::parse_sensors(options.sensors);
+  if (!options.sensors.empty()) simulate.sensors = sensors_of(options.sensors);
+  set_quarter(simulate.street, options.quarter);
   const SimulateResult result = run_with_progress(options.out, simulate, common);
   const std::chrono::duration<double> elapsed = std::chrono::steady_clock::now() - start;
   if (common.json) {
@@ -128,6 +164,8 @@ Command simulate_command() {
   return make_command<SimulateCommandOptions>(
       "simulate", "Make a street of parked cars with exact truth, and scan it",
       "vdbmap simulate street --seed 1 --length 175 --epochs 2\n"
+      "vdbmap simulate street --ideal\n"
+      "vdbmap simulate quarter --quarter 3x2 --sensors mapper@0,os1-128@1\n"
       "vdbmap simulate street --epochs 3 --sensors mapper@0,vlp16@1,vlp16@2\n"
       "vdbmap simulate street --epochs 1 --sensors mapper,hdl64 --scans 20 --occupancy 1",
       add_options, run);

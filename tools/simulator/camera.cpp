@@ -75,7 +75,7 @@ double texture_shade(Texture texture, const Eigen::Vector3d& p, const Eigen::Vec
 
 bool is_in_shadow(const SceneView& view, const Daylight& light, const Eigen::Vector3d& point,
                   const Eigen::Vector3d& normal) {
-  return view.caster.is_blocked({point + kOffSurface * (normal + light.to_sun), light.to_sun, 0, kFarthestShadow});
+  return view.is_blocked({point + kOffSurface * (normal + light.to_sun), light.to_sun, 0, kFarthestShadow});
 }
 
 }  // namespace

@@ -88,10 +88,10 @@ void remove_lasting(Occupied& changed, const Mesh& lasting, const Grid& grid) {
 
 }  // namespace
 
-Eigen::Vector3d change_anchor(const Street& street) { return choose_anchor(street.layout.axis.origin); }
+Eigen::Vector3d change_anchor(const Street& street) { return choose_anchor(street.origin()); }
 
 std::vector<ChangedVoxel> changed_voxels(const Street& street, int epoch) {
-  const Grid grid = {street.layout.axis.origin - change_anchor(street)};
+  const Grid grid = {street.origin() - change_anchor(street)};
   const auto index = static_cast<std::size_t>(epoch);
   const Occupied before = occupied_voxels(street.changing.at(index), grid, street.world, false);
   Occupied changed = occupied_voxels(street.changing.at(index + 1), grid, street.world, true);

@@ -38,8 +38,8 @@ Wave make_wave(double amplitude, double period, Random& random) {
 
 class Motion {
  public:
-  Motion(const StreetLayout& layout, const DriveOptions& options)
-      : layout_(layout), options_(options), random_(hash(options.seed, 51)) {
+  Motion(const Route& route, const DriveOptions& options)
+      : route_(route), options_(options), random_(hash(options.seed, 51)) {
     // The speed swings by some 15 %: for 9 m/s up to 1 m/s^2.
     const double swing = options.speed * 0.15;
     along_ = {make_wave(swing * 8 / (2 * pi), 8, random_), make_wave(swing * 0.6 * 4.5 / (2 * pi), 4.5, random_)};
@@ -58,7 +58,7 @@ class Motion {
     const double offset = kLane + sum(aside_, time, &Wave::value);
     const double speed = options_.speed + sum(along_, time, &Wave::rate);
     const double yaw = std::atan2(sum(aside_, time, &Wave::rate), speed);
-    Eigen::Isometry3d pose = layout_.place(s, offset, yaw);
+    Eigen::Isometry3d pose = route_.place(s, offset, yaw);
     const double rise = height(s + kWheelbase / 2, offset) - height(s - kWheelbase / 2, offset);
     const double bank = height(s, offset + kTrack / 2) - height(s, offset - kTrack / 2);
     const double nose_up = std::atan(rise / kWheelbase) + sum(pitch_, time, &Wave::value) +
@@ -77,9 +77,9 @@ class Motion {
   static double sum(const Waves& waves, double time, double (Wave::*what)(double) const) {
     return (waves[0].*what)(time) + (waves[1].*what)(time);
   }
-  double height(double s, double offset) const { return layout_.ground_height(s, offset); }
+  double height(double s, double offset) const { return route_.height(s, offset); }
 
-  const StreetLayout& layout_;
+  const Route& route_;
   const DriveOptions& options_;
   Random random_;
   Waves along_, aside_, pitch_, roll_, heave_;
@@ -87,8 +87,8 @@ class Motion {
 
 }  // namespace
 
-Drive::Drive(const StreetLayout& layout, const DriveOptions& options) : start_time_(options.start_time) {
-  const Motion motion(layout, options);
+Drive::Drive(const Route& route, const DriveOptions& options) : start_time_(options.start_time) {
+  const Motion motion(route, options);
   double duration = options.shortest_time;
   while (motion.station(duration) < options.to) duration += 0.1;
   poses_.resize(static_cast<std::size_t>(std::ceil(duration / kPeriod)) + 2);

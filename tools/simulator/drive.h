@@ -6,14 +6,14 @@
 
 #include <Eigen/Geometry>
 
-#include "tools/simulator/street_layout.h"
+#include "tools/simulator/route.h"
 
 namespace vdbmap::simulator {
 
-/// How a survey vehicle drives up the street.
+/// How a survey vehicle drives along a route.
 struct DriveOptions {
-  double from = 0;           ///< [m] station at the beginning
-  double to = 100;           ///< [m] station at the end, at least
+  double from = 0;           ///< [m] along the route at the beginning
+  double to = 100;           ///< [m] along the route at the end, at least
   double speed = 9;          ///< [m/s] on average
   double shortest_time = 0;  ///< [s] goes on driving for so long
   double start_time = 0;     ///< [s] of the clock at the beginning
@@ -24,7 +24,7 @@ struct DriveOptions {
 /// sways on its springs. Poses are known every millisecond and interpolated between.
 class Drive {
  public:
-  Drive(const StreetLayout& layout, const DriveOptions& options);
+  Drive(const Route& route, const DriveOptions& options);
 
   double start_time() const { return start_time_; }
   double end_time() const;

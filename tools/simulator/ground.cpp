@@ -10,7 +10,7 @@ namespace {
 
 constexpr double kStationStep = 0.5;      // [m]
 constexpr double kKerbStoneWidth = 0.14;  // [m]
-constexpr double kGroundWidth = 70;       // [m] on either side
+constexpr double kNearGround = 70;        // [m] on either side; coarser beyond
 constexpr double kAtKerb = 1e-6;          // [m] beyond the kerb's offset the ground is that of the pavement
 
 // A strip of ground along the street, between two distances from the axis.
@@ -27,7 +27,7 @@ void append_strips(std::vector<Strip>& strips, double from, double to, double wi
   }
 }
 
-std::vector<Strip> make_strips(const SideLayout& side) {
+std::vector<Strip> make_strips(const SideLayout& side, double depth) {
   const double kerb = side.kerb_offset();
   const double stone = kerb + kKerbStoneWidth;
   std::vector<Strip> strips;
@@ -37,13 +37,15 @@ std::vector<Strip> make_strips(const SideLayout& side) {
   strips.push_back({kerb + kAtKerb, stone});
   append_strips(strips, stone, side.pavement_offset(), 0.6);
   if (side.garden_depth > 0) append_strips(strips, side.pavement_offset(), side.facade_offset(), 1.5);
-  append_strips(strips, side.facade_offset(), kGroundWidth, 6);
+  if (depth > side.facade_offset()) append_strips(strips, side.facade_offset(), std::min(depth, kNearGround), 6);
+  if (depth > kNearGround) append_strips(strips, kNearGround, depth, 20);
   return strips;
 }
 
 MaterialId material_behind_pavement(const StandardMaterials& m, const LotKind& lot) {
   if (lot == LotKind::kSideStreet) return m.asphalt;
-  return lot == LotKind::kDriveway ? m.setts : m.grass;
+  if (lot == LotKind::kCarPark) return m.parking;
+  return lot == LotKind::kDriveway || lot == LotKind::kHall ? m.setts : m.grass;
 }
 
 MaterialId material_at(const StandardMaterials& m, const SideLayout& side, const Strip& strip, LotKind lot) {
@@ -89,6 +91,7 @@ void add_strip(const Brush& brush, const StreetLayout& layout, const SideLayout&
     if (b - a < 1e-9) continue;
     const LotKind lot = lot_at(side, (a + b) / 2);
     if (strip.is_kerb_face && lot == LotKind::kSideStreet) continue;
+    if (lot == LotKind::kCrossing) continue;  // drawn once for both streets
     add_quad(brush.with(material_at(materials, side, strip, lot)), ground_point(layout, a, side.sign * strip.from),
              ground_point(layout, b, side.sign * strip.from), ground_point(layout, b, side.sign * strip.to),
              ground_point(layout, a, side.sign * strip.to));
@@ -102,7 +105,8 @@ void add_ground(World& world, Mesh& mesh, const StreetLayout& layout) {
   const Brush brush = world.add_object(mesh, {"ground", {}}, Eigen::Isometry3d::Identity(), materials.asphalt);
   for (const SideLayout& side : layout.sides) {
     const std::vector<double> stations = make_stations(layout, side);
-    for (const Strip& strip : make_strips(side)) add_strip(brush, layout, side, strip, stations, materials);
+    for (const Strip& strip : make_strips(side, layout.ground_depth))
+      add_strip(brush, layout, side, strip, stations, materials);
   }
 }
 

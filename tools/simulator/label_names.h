@@ -9,7 +9,7 @@
 
 namespace vdbmap::simulator {
 
-/// All classes with SemanticKITTI's names, in the order of their numbers.
-std::vector<std::pair<SurfaceClass, std::string>> label_names();
+/// The classes of a street, with SemanticKITTI's names, in the order of their numbers; an ideal one lacks some.
+std::vector<std::pair<SurfaceClass, std::string>> label_names(bool is_ideal);
 
 }  // namespace vdbmap::simulator

@@ -10,7 +10,9 @@ namespace {
 
 using std::numbers::pi;
 
-constexpr double kMountingHeight = 1.73;  // [m] above the ground, as on KITTI's car
+constexpr double kMountingHeight = 1.73;       // [m] above the ground, as on KITTI's car
+constexpr double kBloomingReflectivity = 1.2;  // from here on a surface blooms
+constexpr double kFarthestBlooming = 40;       // [m]
 
 double radians(double degrees) { return degrees * pi / 180; }
 
@@ -29,8 +31,59 @@ void append_point(Survey& scan, const SceneView& view, const Eigen::Vector3d& di
   scan.cloud.intensities.push_back(velodyne_intensity(echo.reflectivity));
   scan.cloud.times.push_back(time);
   scan.cloud.rings.push_back(ring);
-  const Triangle& triangle = view.mesh.triangles[echo.triangle];
-  scan.truth.push_back({static_cast<std::uint16_t>(view.materials[triangle.material].label), triangle.object});
+  scan.truth.push_back(view.truth(echo.triangle));
+}
+
+// All pulses of a turn, by firing and laser.
+using Turn = std::vector<std::optional<Echo>>;
+
+Turn measure_turn(const SceneView& view, const Drive& drive, const LidarModel& lidar, double start_time,
+                  std::uint64_t seed) {
+  Turn turn;
+  turn.reserve(static_cast<std::size_t>(lidar.num_firings) * lidar.lasers.size());
+  for (int firing = 0; firing < lidar.num_firings; ++firing) {
+    for (Laser laser : lidar.lasers) {
+      const double since_start = lidar.firing_time(firing, laser);
+      const Eigen::Isometry3d scene_from_scanner =
+          drive.scene_from_vehicle(start_time + since_start) * lidar.vehicle_from_scanner;
+      laser.elevation += laser.elevation_error;
+      const Eigen::Vector3d direction = lidar.direction(laser, since_start);
+      RayRandom random(hash(seed, turn.size()));
+      turn.push_back(measure(view.at(start_time + since_start), lidar.pulse, scene_from_scanner.translation(),
+                             scene_from_scanner.linear() * direction, random));
+      if (turn.back()) turn.back()->range += laser.range_bias;
+    }
+  }
+  return turn;
+}
+
+// The index of the laser of each ring.
+std::vector<std::size_t> lasers_by_ring(const LidarModel& lidar) {
+  std::vector<std::size_t> lasers(lidar.lasers.size());
+  for (std::size_t i = 0; i < lasers.size(); ++i) lasers[lidar.lasers[i].ring] = i;
+  return lasers;
+}
+
+// The light of a retroreflector that scatters in the lens: neighbours of its pulses measure its distance too, as points
+// of no surface.
+void bloom(Turn& turn, const LidarModel& lidar, std::uint64_t seed) {
+  const Turn sharp = turn;
+  const std::vector<std::size_t> lasers = lasers_by_ring(lidar);
+  const int num_lasers = static_cast<int>(lasers.size());
+  Random random(hash(seed, 17));
+  for (std::size_t i = 0; i < sharp.size(); ++i) {
+    if (!sharp[i] || sharp[i]->reflectivity < kBloomingReflectivity || sharp[i]->range > kFarthestBlooming) continue;
+    const int firing = static_cast<int>(i) / num_lasers;
+    const int ring = lidar.lasers[i % lasers.size()].ring;
+    for (int f = std::max(0, firing - 2); f <= std::min(lidar.num_firings - 1, firing + 2); ++f) {
+      for (int r = std::max(0, ring - 1); r <= std::min(num_lasers - 1, ring + 1); ++r) {
+        auto& other = turn[static_cast<std::size_t>(f * num_lasers) + lasers[static_cast<std::size_t>(r)]];
+        if (!random.chance(lidar.blooming)) continue;
+        if (other && other->range < sharp[i]->range + 0.3) continue;
+        other = Echo{sharp[i]->range + random.normal(0, 0.04), kNoTriangle, sharp[i]->normal, 0.3};
+      }
+    }
+  }
 }
 
 }  // namespace
@@ -72,22 +125,54 @@ LidarModel hdl64() {
   return lidar;
 }
 
+LidarModel hdl32() {
+  LidarModel lidar{{}, 2170, 0.1, {}, mounting()};
+  // 1.152 us apart, the lower half and the upper half in turns (Velodyne 63-9113, appendix).
+  for (int i = 0; i < 32; ++i) {
+    const int ring = i % 2 == 0 ? i / 2 : 16 + i / 2;
+    lidar.lasers.push_back({radians(-30.67 + 4 * ring / 3.0), 1.152e-6 * i, static_cast<std::uint16_t>(ring), 0});
+  }
+  lidar.pulse = {
+      .nearest = 0.5, .farthest = 100, .range_noise = 0.02, .divergence = 0.003, .half_range = 55, .random_loss = 0.02};
+  return lidar;
+}
+
+LidarModel os1_128() {
+  LidarModel lidar{{}, 1024, 0.1, {}, mounting()};
+  for (int ring = 0; ring < 128; ++ring) {
+    lidar.lasers.push_back({radians(-22.5 + 45 * ring / 127.0), 0, static_cast<std::uint16_t>(ring), 0});
+  }
+  lidar.pulse = {.nearest = 0.5,
+                 .farthest = 120,
+                 .range_noise = 0.015,
+                 .divergence = 0.006,
+                 .half_range = 70,
+                 .random_loss = 0.02};
+  return lidar;
+}
+
+LidarModel with_errors(LidarModel lidar, std::uint64_t seed) {
+  Random random(hash(seed, 93));
+  for (Laser& laser : lidar.lasers) {
+    laser.range_bias = std::clamp(laser.range_bias + random.normal(0, 0.008), -0.02, 0.02);
+    laser.elevation_error = radians(std::clamp(random.normal(0, 0.05), -0.1, 0.1));
+  }
+  lidar.clock_error = random.uniform(-0.001, 0.001);
+  lidar.blooming = 0.3;
+  return lidar;
+}
+
 Survey scan_turn(const SceneView& view, const Drive& drive, const LidarModel& lidar, double start_time,
                  std::uint64_t seed) {
+  Turn turn = measure_turn(view, drive, lidar, start_time, seed);
+  if (lidar.blooming > 0) bloom(turn, lidar, seed);
   Survey scan;
-  for (int firing = 0; firing < lidar.num_firings; ++firing) {
-    for (std::size_t i = 0; i < lidar.lasers.size(); ++i) {
-      const Laser& laser = lidar.lasers[i];
-      const double since_start = lidar.firing_time(firing, laser);
-      const Eigen::Isometry3d scene_from_scanner =
-          drive.scene_from_vehicle(start_time + since_start) * lidar.vehicle_from_scanner;
-      const Eigen::Vector3d direction = lidar.direction(laser, since_start);
-      RayRandom random(hash(seed, static_cast<std::uint64_t>(firing) * lidar.lasers.size() + i));
-      auto echo =
-          measure(view, lidar.pulse, scene_from_scanner.translation(), scene_from_scanner.linear() * direction, random);
-      if (echo) echo->range += laser.range_bias;
-      if (echo) append_point(scan, view, direction, *echo, start_time + since_start, laser.ring);
-    }
+  for (std::size_t i = 0; i < turn.size(); ++i) {
+    if (!turn[i]) continue;
+    const Laser& laser = lidar.lasers[i % lidar.lasers.size()];
+    const double since_start = lidar.firing_time(static_cast<int>(i / lidar.lasers.size()), laser);
+    append_point(scan, view, lidar.direction(laser, since_start), *turn[i],
+                 start_time + since_start + lidar.clock_error, laser.ring);
   }
   return scan;
 }

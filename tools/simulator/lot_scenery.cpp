@@ -6,6 +6,7 @@
 
 #include "tools/simulator/furniture.h"
 #include "tools/simulator/house.h"
+#include "tools/simulator/things/shrub.h"
 
 namespace vdbmap::simulator {
 namespace {
@@ -31,6 +32,10 @@ class LotPainter {
     if (lot_.kind == LotKind::kGap) draw_gap();
     if (lot_.kind == LotKind::kDriveway) draw_driveway();
     if (lot_.kind == LotKind::kSideStreet) draw_side_street();
+    if (lot_.kind == LotKind::kPark) draw_park();
+    if (lot_.kind == LotKind::kCarPark) draw_car_park();
+    if (lot_.kind == LotKind::kHall) draw_hall();
+    if (lot_.kind == LotKind::kOpen) draw_open();
   }
 
  private:
@@ -47,6 +52,7 @@ class LotPainter {
   void add_tree(const Eigen::Isometry3d& frame, double radius) { add_tree(make_tree(frame, radius, random_)); }
 
   void add_tree(Tree tree) {
+    if (!layout_.is_ideal) roughen(tree, random_);
     tree.leaves = materials().leaves;
     tree.object = world_.add_object({"tree", tree.scene_from_foot.translation()});
     add_wood(mesh_, tree, materials());
@@ -72,7 +78,7 @@ class LotPainter {
       const double x = random_.uniform(0.6, type.width - 0.6);
       const double y = random_.uniform(1.0, side_.garden_depth - 0.6);
       if (std::abs(x - door) < 1.0) continue;
-      add_bush(object("bush", moved(border_frame_, x, y), materials().leaves), random_.uniform(0.4, 1.1), random_);
+      add_garden_bush(object("bush", moved(border_frame_, x, y), materials().leaves), random_.uniform(0.4, 1.1));
     }
     const double x = door > type.width / 2 ? 0.2 * type.width : 0.8 * type.width;
     const Eigen::Isometry3d place = moved(border_frame_, x, side_.garden_depth * 0.5);
@@ -83,6 +89,16 @@ class LotPainter {
     }
   }
 
+  void add_garden_bush(const Brush& leaves, double radius) {
+    if (layout_.is_ideal) return add_bush(leaves, radius, random_);
+    add_rough_bush(leaves, materials().twigs, radius, random_);
+  }
+
+  void add_garden_hedge(const Brush& leaves, const Eigen::Vector3d& size) {
+    if (layout_.is_ideal) return add_hedge(leaves, size, random_);
+    add_rough_hedge(leaves, materials().twigs, size, random_);
+  }
+
   // Hedge, fence or wall between pavement and garden; neighbours of one type have much the same.
   void draw_border(double from, double to) {
     if (to - from < 0.4) return;
@@ -90,7 +106,7 @@ class LotPainter {
     const Eigen::Isometry3d frame = moved(border_frame_, from, 0);
     if (choice < 0.58) {
       const Eigen::Vector3d size(to - from, random_.uniform(0.5, 0.9), random_.uniform(0.9, 2.0));
-      add_hedge(object("hedge", frame, materials().hedge), size, random_);
+      add_garden_hedge(object("hedge", frame, materials().hedge), size);
     } else if (choice < 0.72) {
       const bool is_wood = random_.chance(0.5);
       add_fence(object("fence", frame, is_wood ? materials().wood : materials().metal_fence), to - from,
@@ -122,12 +138,63 @@ class LotPainter {
     add_tree(moved(lot_frame_, width / 2, random_.uniform(16, 26)), random_.uniform(2.5, 3.5));
   }
 
-  // Two houses on each side of it, and a tree where it ends.
+  // Trees and bushes on grass, a hedge here and there along the pavement, benches.
+  void draw_park() {
+    const double width = lot_.along.length(), depth = std::min(40.0, layout_.scenery_depth - side_.facade_offset() - 2);
+    for (double x = 2; x < width; x += random_.uniform(5, 9)) {
+      add_tree(moved(border_frame_, x, random_.uniform(2, 6)), random_.uniform(2, 3.6));
+      add_tree(moved(border_frame_, x, random_.uniform(10, std::max(11.0, depth))), random_.uniform(2, 4));
+    }
+    for (int i = 0; i < static_cast<int>(width / 3); ++i) {
+      const Eigen::Isometry3d place =
+          moved(border_frame_, random_.uniform(1, width - 1), random_.uniform(1, depth / 2));
+      add_garden_bush(object("bush", place, materials().leaves), random_.uniform(0.4, 1.6));
+    }
+    if (random_.chance(0.4)) draw_border(0, width);
+  }
+
+  // A hedge or nothing towards the pavement, and lamps between the rows; its cars are those of Parking.
+  void draw_car_park() {
+    const double width = lot_.along.length();
+    if (random_.chance(0.5)) draw_border(0, width / 2 - 3);
+    if (random_.chance(0.5)) draw_border(width / 2 + 3, width);
+    for (double x = 6; x < width; x += 15) {
+      add_lamp(object("lamp", moved(lot_frame_, x, 9.2), materials().steel), materials());
+    }
+    add_fence(object("fence", moved(lot_frame_, 0, 24), materials().metal_fence), width, 1.8, 0.13);
+  }
+
+  // A long wall, smooth or of panels, that nothing but a gate interrupts.
+  void draw_hall() {
+    const double width = lot_.along.length() - 1, depth = random_.uniform(12, 22), height = random_.uniform(4.5, 9);
+    const MaterialId skin = random_.chance(0.5) ? materials().plaster : materials().stone;
+    const Brush wall = object("hall", moved(lot_frame_, 0.5, 0.3), skin);
+    add_box(wall, {0, 0, -0.6}, {width, depth, height});
+    if (random_.chance(0.6)) {
+      for (double x = 0; x < width; x += 2.5) add_box(wall, {x, -0.08, -0.6}, {x + 0.15, 0, height});
+    }
+    const double gate = random_.uniform(0.2, 0.7) * width;
+    add_box(wall.with(materials().door), {gate, -0.03, 0}, {gate + 3.5, 0, 3.6});
+  }
+
+  // Grass and a view; what is seen in it is far.
+  void draw_open() {
+    const double width = lot_.along.length(), depth = layout_.scenery_depth - side_.facade_offset();
+    if (random_.chance(0.5)) {
+      add_fence(object("fence", border_frame_, materials().wood), width, random_.uniform(0.9, 1.3), 0.4);
+    }
+    for (double x = -15; x < width + 15; x += random_.uniform(6, 14)) {
+      add_tree(moved(lot_frame_, x, random_.uniform(0.7, 0.95) * depth), random_.uniform(2.5, 4));
+    }
+  }
+
+  // Houses on each side of it, and a tree where it ends.
   void draw_side_street() {
     const double width = lot_.along.length();
     const HouseType& type = side_.house_types.front();
+    const int num_houses = layout_.is_ideal ? 3 : std::max(3, static_cast<int>(95 / type.width));
     double y = 13;
-    for (int i = 0; i < 3; ++i, y += type.width) {
+    for (int i = 0; i < num_houses; ++i, y += type.width) {
       const Eigen::Isometry3d right = moved(lot_frame_, width + 1.8, y + type.width, -std::numbers::pi / 2);
       const Eigen::Isometry3d left = moved(lot_frame_, -1.8, y, std::numbers::pi / 2);
       add_house(world_, mesh_, {right, type, side_.housing, random_.seed()});

@@ -2,6 +2,7 @@
 #include "tools/simulator/lots.h"
 
 #include <algorithm>
+#include <array>
 
 namespace vdbmap::simulator {
 namespace {
@@ -23,8 +24,13 @@ double side_street_begin(const SideLayout& side, const Interval& stretch, double
 
 class LotRow {
  public:
-  LotRow(const SideLayout& side, const Interval& stretch, double side_street, Random& random)
-      : side_(side), stretch_(stretch), side_street_(side_street), random_(random), station_(stretch.begin) {}
+  LotRow(const SideLayout& side, const Interval& stretch, double side_street, double special_share, Random& random)
+      : side_(side),
+        stretch_(stretch),
+        side_street_(side_street),
+        special_share_(special_share),
+        random_(random),
+        station_(stretch.begin) {}
 
   std::vector<Lot> make() {
     while (station_ < stretch_.end) {
@@ -34,6 +40,7 @@ class LotRow {
       }
       append_row();
       append_gap();
+      if (special_share_ > 0 && random_.chance(special_share_)) append_special();
     }
     return lots_;
   }
@@ -56,6 +63,15 @@ class LotRow {
     append(has_driveway ? LotKind::kDriveway : LotKind::kGap, width, 0);
   }
 
+  // Something else than houses, where the side street leaves room.
+  void append_special() {
+    constexpr std::array<LotKind, 4> kKinds = {LotKind::kPark, LotKind::kCarPark, LotKind::kHall, LotKind::kOpen};
+    const LotKind kind = kKinds[random_.index(kKinds.size())];
+    const double length = kind == LotKind::kOpen ? random_.uniform(25, 55) : random_.uniform(20, 40);
+    const double room = (station_ < side_street_ ? std::min(side_street_, stretch_.end) : stretch_.end) - station_;
+    if (room >= length) append(kind, length, 0);
+  }
+
   void append(LotKind kind, double length, std::size_t type) {
     lots_.push_back({kind, {station_, station_ + length}, type, random_.seed()});
     station_ += length;
@@ -64,6 +80,7 @@ class LotRow {
   const SideLayout& side_;
   Interval stretch_;
   double side_street_;
+  double special_share_;
   Random& random_;
   double station_;
   std::vector<Lot> lots_;
@@ -73,7 +90,11 @@ class LotRow {
 
 std::vector<Lot> make_lots(const SideLayout& side, const Interval& stretch, double street_length, Random& random) {
   const double side_street = side_street_begin(side, stretch, street_length, random);
-  return LotRow(side, stretch, side_street, random).make();
+  return LotRow(side, stretch, side_street, 0, random).make();
+}
+
+std::vector<Lot> make_rough_lots(const SideLayout& side, const Interval& stretch, const LotPlan& plan, Random& random) {
+  return LotRow(side, stretch, plan.side_street.value_or(stretch.end + 1), plan.special_share, random).make();
 }
 
 }  // namespace vdbmap::simulator

@@ -9,21 +9,39 @@ namespace vdbmap::simulator {
 
 /// What a surface is, in the numbers of SemanticKITTI's .label files.
 enum class SurfaceClass : std::uint16_t {
+  kOutlier = 1,  ///< no surface: rain, blooming
   kCar = 10,
   kBicycle = 11,
+  kBus = 13,
+  kMotorcycle = 15,
+  kTruck = 18,
+  kOtherVehicle = 20,  ///< caravans and trailers
   kPerson = 30,
+  kBicyclist = 31,
+  kMotorcyclist = 32,
   kRoad = 40,
   kParking = 44,
   kPavement = 48,
   kBuilding = 50,
   kFence = 51,
+  kOtherStructure = 52,
   kVegetation = 70,
   kTrunk = 71,
   kTerrain = 72,
   kPole = 80,
   kTrafficSign = 81,
   kOtherObject = 99,
+  kMovingCar = 252,
+  kMovingBicyclist = 253,
+  kMovingPerson = 254,
+  kMovingMotorcyclist = 255,
+  kMovingBus = 257,
+  kMovingTruck = 258,
+  kMovingOtherVehicle = 259,
 };
+
+/// The class of a thing that moves; the same where SemanticKITTI has none.
+SurfaceClass moving_class(SurfaceClass label);
 
 /// The pattern that varies a material's colour from place to place.
 enum class Texture { kPlain, kAsphalt, kSlabs, kSetts, kPlaster, kBrick, kRoofTiles, kGrass, kLeaves, kWood };

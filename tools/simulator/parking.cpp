@@ -14,12 +14,14 @@ constexpr double kParallelLength = 5.6;
 constexpr double kParallelWidth = 2.0;
 constexpr double kAngledLength = 5.0;
 constexpr double kAngledWidth = 2.4;
+constexpr double kCarParkWidth = 2.5;
 constexpr double kAngle = 60 * std::numbers::pi / 180;  // [rad] of angled spaces to the kerb
 constexpr double kFromDriveway = 0.4;
 constexpr double kFromSideStreet = 5.0;  // where German law keeps crossings free
 constexpr double kFromEnd = 3.0;
 constexpr double kLongestAngledVehicle = 4.9;
 constexpr double kReversedShare = 0.12;  // of the cars stand against the traffic
+constexpr double kOpenDoorShare = 0.05;  // of the cars
 
 bool is_angled(const SideLayout& side) { return side.parking == ParkingKind::kAngled; }
 
@@ -47,7 +49,8 @@ bool may_park(const SideLayout& side, const Interval& place) {
   }
   for (const Lot& lot : side.lots) {
     if (lot.kind == LotKind::kDriveway && lot.along.meets(place, kFromDriveway)) return false;
-    if (lot.kind == LotKind::kSideStreet && lot.along.meets(place, kFromSideStreet)) return false;
+    const bool is_crossing = lot.kind == LotKind::kSideStreet || lot.kind == LotKind::kCrossing;
+    if (is_crossing && lot.along.meets(place, kFromSideStreet)) return false;
   }
   return true;
 }
@@ -69,6 +72,57 @@ void append_spaces(std::vector<ParkingSpace>& spaces, const StreetLayout& layout
                       is_angled(side) ? kAngledLength : kParallelLength,
                       is_angled(side) ? kAngledWidth : kParallelWidth});
     station = place.end;
+  }
+}
+
+// Two rows of spaces, noses to a lane between them.
+void append_car_parks(std::vector<ParkingSpace>& spaces, const StreetLayout& layout, std::size_t index) {
+  const SideLayout& side = layout.sides[index];
+  for (const Lot& lot : side.lots) {
+    if (lot.kind != LotKind::kCarPark) continue;
+    for (double station = lot.along.begin + 2; station + kCarParkWidth < lot.along.end - 1; station += kCarParkWidth) {
+      for (const double row : {3.5, 15.0}) {
+        const double yaw = side.sign * (row < 10 ? 1 : -1) * std::numbers::pi / 2;
+        spaces.push_back(
+            {index, station + kCarParkWidth / 2, side.facade_offset() + row, yaw, kAngledLength, kCarParkWidth, true});
+      }
+    }
+  }
+}
+
+// A place where a vehicle may stand that is no parking space.
+struct Spot {
+  double station;
+  double offset;   // [m] from the axis, left positive
+  double yaw;      // [rad]
+  double longest;  // [m]
+  double share;    // of the epochs in which somebody stands there
+};
+
+void append_spots(std::vector<Spot>& spots, const StreetLayout& layout, const SideLayout& side, Random& random) {
+  using std::numbers::pi;
+  const double away = side.sign * pi / 2;
+  for (const Lot& lot : side.lots) {
+    if (lot.kind == LotKind::kDriveway && side.garden_depth >= 3 && side.housing != Housing::kBlock) {
+      spots.push_back({lot.along.middle(), side.sign * (side.pavement_offset() + 2.7), -away, 4.8, 0.5});
+    }
+    if (lot.kind != LotKind::kSideStreet) continue;
+    for (double distance = side.facade_offset() + 10; distance < layout.scenery_depth - 15; distance += 6.2) {
+      const bool is_left = random.chance(0.5);
+      const double station = is_left ? lot.along.begin + 1.3 : lot.along.end - 1.3;
+      spots.push_back({station, side.sign * distance, is_left ? away : -away, 5.5, 0.45});
+    }
+  }
+  // Trucks and trailers stand where nobody else parks: before and behind the spaces.
+  const double along = side.sign > 0 ? pi : 0, beside = side.kerb_offset() - 1.3;
+  for (const double station : {-9.0, layout.length + 9}) {
+    if (layout.margin >= 20 && side.parking != ParkingKind::kNone && may_park(side, {station - 5, station + 5})) {
+      spots.push_back({station, side.sign * beside, along, 9.0, 0.3});
+    }
+  }
+  // A delivery in the second row, on the side that the surveys do not drive on; a quarter's drive uses both.
+  if (side.sign > 0 && !layout.axis.hills && random.chance(0.5)) {
+    spots.push_back({random.uniform(0.1, 0.9) * layout.length, side.lane_width - 1.1, pi, 6.5, 0.5});
   }
 }
 
@@ -126,6 +180,33 @@ ParkedVehicle park(World& world, const StreetLayout& layout, const ParkingSpace&
   return vehicle;
 }
 
+// A vehicle of any kind; the frame is the place's.
+ParkedVehicle stand(World& world, const StreetLayout& layout, const Spot& spot, Random& random) {
+  const VehicleShape shape = make_any_shape(spot.longest, random);
+  ParkedVehicle vehicle{0, shape, world.add_paint(class_of(shape.body), random), {}, kNoSpace};
+  const double yaw = spot.yaw + (random.chance(kReversedShare) ? std::numbers::pi : 0) +
+                     0.02 * std::clamp(random.normal(0, 1), -2., 2.);
+  vehicle.scene_from_vehicle = stand_on_ground(layout, spot.station, spot.offset, yaw, shape);
+  vehicle.object = world.add_object({name_of(shape.body), vehicle.scene_from_vehicle.translation()});
+  if (shape.body < VehicleBody::kBoxVan && random.chance(kOpenDoorShare)) {
+    vehicle.open_door = (random.chance(0.5) ? 1 : -1) * random.uniform(0.5, 1.2);
+  }
+  return vehicle;
+}
+
+// The same for a space: not in its middle, nor quite straight.
+ParkedVehicle park_any(World& world, const StreetLayout& layout, const ParkingSpace& space, std::size_t index,
+                       Random& random) {
+  const SideLayout& side = layout.sides[space.side];
+  const bool is_across = space.in_car_park || is_angled(side);
+  Spot spot = {space.station, side.sign * (space.distance + std::clamp(random.normal(0, 0.07), -0.15, 0.15)), space.yaw,
+               is_across ? kLongestAngledVehicle : space.length - 0.1, 1};
+  if (!is_across) spot.station += random.uniform(-0.2, 0.2);
+  ParkedVehicle vehicle = stand(world, layout, spot, random);
+  vehicle.space = index;
+  return vehicle;
+}
+
 // The chance that keeps the share of taken spaces the same over the epochs.
 double arrival_chance(const StreetOptions& options, int epoch) {
   if (epoch == 0) return options.occupancy;
@@ -134,23 +215,65 @@ double arrival_chance(const StreetOptions& options, int epoch) {
   return empty > 0 ? leaving / empty : 0;
 }
 
+std::vector<ParkingSpace> spaces_of(const StreetLayout& layout, std::size_t street) {
+  std::vector<ParkingSpace> spaces;
+  for (const std::size_t side : {0, 1}) {
+    append_spaces(spaces, layout, side);
+    if (!layout.is_ideal) append_car_parks(spaces, layout, side);
+  }
+  for (ParkingSpace& space : spaces) space.street = street;
+  return spaces;
+}
+
+// Who stands elsewhere in each epoch.
+void append_elsewhere(Parking& parking, World& world, const StreetLayout& layout, const StreetOptions& options,
+                      Random& random) {
+  std::vector<Spot> spots;
+  for (const SideLayout& side : layout.sides) append_spots(spots, layout, side, random);
+  for (const Spot& spot : spots) {
+    constexpr auto kNobody = static_cast<std::size_t>(-1);
+    std::size_t standing = kNobody;
+    for (std::size_t epoch = 0; epoch < parking.elsewhere.size(); ++epoch) {
+      if (standing != kNobody && random.chance(options.turnover)) standing = kNobody;
+      if (standing == kNobody && random.chance(spot.share * options.occupancy)) {
+        standing = parking.vehicles.size();
+        parking.vehicles.push_back(stand(world, layout, spot, random));
+      }
+      if (standing != kNobody) parking.elsewhere[epoch].push_back(standing);
+    }
+  }
+}
+
 }  // namespace
 
-Parking make_parking(World& world, const StreetLayout& layout, const StreetOptions& options) {
-  Random random(hash(options.seed, 31));
-  Parking parking;
-  for (const std::size_t side : {0, 1}) append_spaces(parking.spaces, layout, side);
-  std::vector<std::optional<std::size_t>> state(parking.spaces.size());
-  for (int epoch = 0; epoch < options.num_epochs; ++epoch) {
+void append_parking(Parking& parking, World& world, const StreetLayout& layout, std::size_t street,
+                    const StreetOptions& options) {
+  Random random(hash(street == 0 ? options.seed : hash(options.seed, street), 31));
+  const auto num_epochs = static_cast<std::size_t>(options.num_epochs);
+  const std::size_t first = parking.spaces.size();
+  const std::vector<ParkingSpace> spaces = spaces_of(layout, street);
+  parking.spaces.insert(parking.spaces.end(), spaces.begin(), spaces.end());
+  parking.vehicle_in_space.resize(num_epochs);
+  parking.elsewhere.resize(num_epochs);
+  std::vector<std::optional<std::size_t>> state(spaces.size());
+  for (std::size_t epoch = 0; epoch < num_epochs; ++epoch) {
     for (std::size_t i = 0; i < state.size(); ++i) {
       if (state[i] && random.chance(options.turnover)) state[i].reset();
-      if (state[i] || !random.chance(arrival_chance(options, epoch))) continue;
+      if (state[i] || !random.chance(arrival_chance(options, static_cast<int>(epoch)))) continue;
       // A place that was just left may be taken by another car.
       state[i] = parking.vehicles.size();
-      parking.vehicles.push_back(park(world, layout, parking.spaces[i], i, random));
+      parking.vehicles.push_back(layout.is_ideal ? park(world, layout, spaces[i], first + i, random)
+                                                 : park_any(world, layout, spaces[i], first + i, random));
     }
-    parking.vehicle_in_space.push_back(state);
+    auto& of_epoch = parking.vehicle_in_space[epoch];
+    of_epoch.insert(of_epoch.end(), state.begin(), state.end());
   }
+  if (!layout.is_ideal) append_elsewhere(parking, world, layout, options, random);
+}
+
+Parking make_parking(World& world, const StreetLayout& layout, const StreetOptions& options) {
+  Parking parking;
+  append_parking(parking, world, layout, 0, options);
   return parking;
 }
 

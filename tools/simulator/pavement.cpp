@@ -4,6 +4,7 @@
 #include <numbers>
 
 #include "tools/simulator/furniture.h"
+#include "tools/simulator/things/shrub.h"
 
 namespace vdbmap::simulator {
 namespace {
@@ -101,13 +102,19 @@ class PavementPainter {
       add_tree(layout_.place_on_side(side_, island.middle(), distance));
       for (const double aside : {-0.55, 0.55}) {
         const Eigen::Isometry3d foot = layout_.place_on_side(side_, island.middle() + aside, distance);
-        add_bush(object("shrub", foot).with(world_.standard().leaves), random_.uniform(0.4, 0.7), random_);
+        const Brush leaves = object("shrub", foot).with(world_.standard().leaves);
+        if (layout_.is_ideal) {
+          add_bush(leaves, random_.uniform(0.4, 0.7), random_);
+        } else {
+          add_rough_bush(leaves, world_.standard().twigs, random_.uniform(0.35, 0.6), random_);
+        }
       }
     }
   }
 
   void add_tree(const Eigen::Isometry3d& foot) {
     Tree tree = make_tree(foot, random_.uniform(1.7, 2.6), random_);
+    if (!layout_.is_ideal) roughen(tree, random_);
     tree.leaves = world_.standard().leaves;
     tree.object = world_.add_object({"tree", foot.translation()});
     add_wood(mesh_, tree, world_.standard());

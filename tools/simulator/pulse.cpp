@@ -15,6 +15,7 @@ constexpr double kMirrorSharpness = 24;  // exponent of the lobe of glossy surfa
 constexpr double kFlatTolerance = 0.06;  // [m] off the plane of the first surface is another surface
 constexpr double kMergedShare = 0.45;    // of the double echoes is measured between its surfaces
 constexpr double kReflectivityNoise = 0.05;
+constexpr double kFarthestSpeck = 12;  // [m] drops beyond send too little back
 
 // What a thin ray meets behind the panes that let it pass.
 struct Return {
@@ -34,7 +35,7 @@ std::optional<Return> trace(const SceneView& view, const PulseModel& model, cons
   Ray ray = {origin, direction, 0, model.farthest};
   double light = 1;
   for (int pane = 0; pane < kMostPanes; ++pane) {
-    const std::optional<Hit> hit = view.caster.first_hit(ray);
+    const std::optional<Hit> hit = view.first_hit(ray);
     if (!hit) return std::nullopt;
     const Material& material = view.material(hit->triangle);
     if (material.transmission == 0 || !random.chance(material.transmission)) {
@@ -90,11 +91,18 @@ bool is_detected(const PulseModel& model, const Return& found, RayRandom& random
   return random.chance(light * light / (1 + light * light));
 }
 
+std::optional<Echo> rain_echo(const PulseModel& model, const Eigen::Vector3d& direction, RayRandom& random) {
+  if (model.specks == 0 || !random.chance(model.specks * kFarthestSpeck)) return std::nullopt;
+  return Echo{random.uniform(model.nearest, kFarthestSpeck), kNoTriangle, -direction, random.uniform(0.01, 0.05)};
+}
+
 }  // namespace
 
 std::optional<Echo> measure(const SceneView& view, const PulseModel& model, const Eigen::Vector3d& origin,
                             const Eigen::Vector3d& direction, RayRandom& random) {
   const std::optional<Return> found = trace_beam(view, model, origin, direction, random);
+  const std::optional<Echo> speck = rain_echo(model, direction, random);
+  if (speck && (!found || speck->range < found->hit.distance)) return speck;
   if (!found || !is_detected(model, *found, random)) return std::nullopt;
   const double range = found->hit.distance + (model.range_noise > 0 ? random.normal(0, model.range_noise) : 0.0);
   if (range < model.nearest || range > model.farthest) return std::nullopt;

@@ -6,18 +6,9 @@
 #include <vector>
 
 #include "tools/simulator/random.h"
-#include "tools/simulator/ray_caster.h"
+#include "tools/simulator/scene_view.h"
 
 namespace vdbmap::simulator {
-
-/// What laser pulses and cameras meet. Refers to parts that must outlive it.
-struct SceneView {
-  const Mesh& mesh;
-  const std::vector<Material>& materials;
-  const RayCaster& caster;
-
-  const Material& material(std::uint32_t triangle) const { return materials[mesh.triangles[triangle].material]; }
-};
 
 /// How a laser measures.
 struct PulseModel {
@@ -28,12 +19,13 @@ struct PulseModel {
   double half_range = 0;          ///< [m] where half of the pulses on 10 % of reflectance come back; 0: all do
   double random_loss = 0;         ///< share of pulses that never come back
   double merging_distance = 1.2;  ///< [m] two surfaces nearer than that make one echo
+  double specks = 0;              ///< [1/m] chance of an echo of rain, near the scanner
 };
 
 /// What came back.
 struct Echo {
   double range;            ///< [m] as measured
-  std::uint32_t triangle;  ///< that sent most of it back
+  std::uint32_t triangle;  ///< that sent most of it back; kNoTriangle for rain
   Eigen::Vector3d normal;  ///< of that surface
   double reflectivity;     ///< reflectance as the scanner believes it to be, 1 for a white wall
 };

@@ -3,51 +3,11 @@
 
 #include <cstddef>
 #include <filesystem>
-#include <functional>
-#include <optional>
-#include <string>
 #include <vector>
 
-#include "tools/simulator/street_options.h"
+#include "tools/simulator/simulate_options.h"
 
 namespace vdbmap::simulator {
-
-enum class Sensor {
-  kMapper,  ///< mobile mapper: cloud.las
-  kVlp16,   ///< sparse scans: scans/, poses.txt
-  kHdl64,   ///< dense scans: scans_hdl64/, poses_hdl64.txt
-};
-
-/// Which scanner drives up the street in which epoch.
-struct SensorUse {
-  Sensor sensor;
-  std::optional<int> epoch;  ///< every one where none is given
-};
-
-/// Reads "NAME,NAME@EPOCH,..." with the names mapper, vlp16 and hdl64. Throws std::invalid_argument.
-std::vector<SensorUse> parse_sensors(const std::string& text);
-
-/// What a simulation makes.
-struct SimulateOptions {
-  StreetOptions street;
-  std::vector<SensorUse> sensors;  ///< empty: the mapper in epoch 0, the VLP-16 in every later one
-  int num_scans = 101;             ///< 1..5000 turns in an epoch
-  /// Called once for each of num_steps() steps, by any thread.
-  std::function<void()> on_step = [] {};
-
-  std::size_t num_steps() const;
-
-  /// Throws std::invalid_argument naming the value and what is allowed.
-  void check() const;
-};
-
-/// What an epoch holds.
-struct EpochResult {
-  std::size_t num_vehicles = 0;
-  std::size_t num_cloud_points = 0;
-  std::size_t num_scans = 0;
-  std::size_t num_scan_points = 0;
-};
 
 struct SimulateResult {
   std::vector<EpochResult> epochs;

@@ -19,11 +19,14 @@ double StreetAxis::heading_at(double station) const {
 Eigen::Vector2d StreetAxis::point(double station, double offset) const {
   const double aside = bend_amplitude * (std::sin(kTurn / bend_length * station + bend_phase) - std::sin(bend_phase));
   const double direction = heading_at(station);
-  return Eigen::Vector2d(std::cos(heading) * station - std::sin(heading) * aside - std::sin(direction) * offset,
-                         std::sin(heading) * station + std::cos(heading) * aside + std::cos(direction) * offset);
+  const Eigen::Vector2d from_start(
+      std::cos(heading) * station - std::sin(heading) * aside - std::sin(direction) * offset,
+      std::sin(heading) * station + std::cos(heading) * aside + std::cos(direction) * offset);
+  return start + from_start;
 }
 
 double StreetAxis::height(double station) const {
+  if (hills) return hills->height(point(station, 0));
   return slope * station + sag_amplitude * std::sin(kTurn / sag_length * station);
 }
 
@@ -38,6 +41,14 @@ StreetAxis make_axis(Random& random) {
   axis.slope = random.uniform(0.004, 0.02) * (random.chance(0.5) ? 1 : -1);
   axis.sag_amplitude = random.uniform(0.05, 0.3);
   axis.sag_length = random.uniform(90, 200);
+  return axis;
+}
+
+StreetAxis make_rough_axis(Random& random) {
+  StreetAxis axis = make_axis(random);
+  axis.bend_amplitude *= random.uniform(1, 2.5);
+  axis.slope *= random.uniform(0.5, 2.5);
+  axis.sag_amplitude *= random.uniform(1, 2);
   return axis;
 }
 

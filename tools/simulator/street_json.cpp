@@ -3,6 +3,7 @@
 
 #include <array>
 #include <numbers>
+#include <span>
 
 #include <nlohmann/json.hpp>
 
@@ -24,8 +25,10 @@ Json json_of(const Eigen::Isometry3d& transform) {
 }
 
 Json json_of_options(const StreetOptions& options) {
-  return {{"seed", options.seed},         {"length", options.length},       {"margin", options.margin},
-          {"epochs", options.num_epochs}, {"occupancy", options.occupancy}, {"turnover", options.turnover}};
+  Json json = {{"seed", options.seed},         {"length", options.length},       {"margin", options.margin},
+               {"epochs", options.num_epochs}, {"occupancy", options.occupancy}, {"turnover", options.turnover}};
+  if (options.is_quarter()) json["quarter"] = {options.quarter_columns, options.quarter_rows};
+  return json;
 }
 
 Json json_of_axis(const StreetAxis& axis) {
@@ -58,11 +61,7 @@ Json json_of_house_type(const HouseType& type) {
 }
 
 Json json_of_lot(const Lot& lot) {
-  constexpr std::array<const char*, 4> kKinds = {"house", "gap", "driveway", "side street"};
-  Json json = {{"kind", kKinds[static_cast<std::size_t>(lot.kind)]},
-               {"begin", lot.along.begin},
-               {"end", lot.along.end},
-               {"seed", lot.seed}};
+  Json json = {{"kind", name_of(lot.kind)}, {"begin", lot.along.begin}, {"end", lot.along.end}, {"seed", lot.seed}};
   if (lot.kind == LotKind::kHouse) json["house_type"] = lot.house_type;
   return json;
 }
@@ -89,8 +88,9 @@ Json json_of_objects(const Street& street) {
   for (std::size_t i = 0; i < street.world.objects().size(); ++i) {
     const SceneObject& object = street.world.objects()[i];
     Json json = {{"id", i}, {"kind", object.kind}};
-    json["position"] = json_of(street.layout.axis.origin + object.position);
+    json["position"] = json_of(street.origin() + object.position);
     if (object.epoch >= 0) json["epoch"] = object.epoch;
+    if (object.moves) json["moves"] = true;
     objects.push_back(json);
   }
   return objects;
@@ -106,31 +106,73 @@ Json json_of_pulse(const PulseModel& pulse) {
           {"merging_distance", pulse.merging_distance}};
 }
 
+Json json_of_errors(const LidarModel& lidar) {
+  Json biases = Json::array(), elevations = Json::array();
+  for (const Laser& laser : lidar.lasers) {
+    biases.push_back(laser.range_bias);
+    elevations.push_back(laser.elevation_error * 180 / std::numbers::pi);
+  }
+  return {{"range_bias", biases},
+          {"elevation_deg", elevations},
+          {"clock", lidar.clock_error},
+          {"blooming", lidar.blooming},
+          {"specks", lidar.pulse.specks}};
+}
+
+Json json_of_waves(std::span<const MapperError::Wave> waves) {
+  Json json = Json::array();
+  for (const MapperError::Wave& wave : waves) {
+    json.push_back({{"amplitude", wave.amplitude}, {"length", wave.length}, {"phase", wave.phase}});
+  }
+  return json;
+}
+
+Json json_of_layout(const StreetLayout& layout) {
+  Json sides = Json::array();
+  for (const SideLayout& side : layout.sides) sides.push_back(json_of_side(side));
+  return {{"axis", json_of_axis(layout.axis)}, {"sides", sides}};
+}
+
+Json json_of_quarter(const Street& street) {
+  Json streets = Json::array();
+  for (const StreetLayout& layout : street.layouts) streets.push_back(json_of_layout(layout));
+  Json crossings = Json::array();
+  for (const Crossing& crossing : street.crossings) {
+    crossings.push_back({{"streets", {crossing.row_street, crossing.column_street}},
+                         {"stations", {crossing.row_station, crossing.column_station}}});
+  }
+  Json tour = Json::array();
+  for (const Leg& leg : street.tour) tour.push_back({{"street", leg.street}, {"from", leg.from}, {"to", leg.to}});
+  return {{"streets", streets}, {"crossings", crossings}, {"tour", tour}};
+}
+
 }  // namespace
 
 Json json_of_street(const Street& street) {
-  Json sides = Json::array();
-  for (const SideLayout& side : street.layout.sides) sides.push_back(json_of_side(side));
   Json classes = Json::array();
-  for (const auto& [label, name] : label_names()) {
+  for (const auto& [label, name] : label_names(street.options.is_ideal)) {
     classes.push_back({{"label", static_cast<int>(label)}, {"name", name}});
   }
-  return {{"options", json_of_options(street.options)},
-          {"epsg", 25832},
-          {"axis", json_of_axis(street.layout.axis)},
-          {"sides", sides},
-          {"classes", classes},
-          {"objects", json_of_objects(street)}};
+  Json json = {{"options", json_of_options(street.options)}, {"epsg", 25832}};
+  if (street.options.is_quarter()) {
+    json.update(json_of_quarter(street));
+  } else {
+    json.update(json_of_layout(street.layouts.front()));
+  }
+  json.update({{"classes", classes}, {"objects", json_of_objects(street)}});
+  return json;
 }
 
 Json json_of_lidar(const LidarModel& lidar) {
   Json elevations = Json::array();
   for (const Laser& laser : lidar.lasers) elevations.push_back(laser.elevation * 180 / std::numbers::pi);
-  return {{"firings_per_turn", lidar.num_firings},
-          {"turn_time", lidar.turn_time},
-          {"elevations_deg", elevations},
-          {"vehicle_from_scanner", json_of(lidar.vehicle_from_scanner)},
-          {"pulse", json_of_pulse(lidar.pulse)}};
+  Json json = {{"firings_per_turn", lidar.num_firings},
+               {"turn_time", lidar.turn_time},
+               {"elevations_deg", elevations},
+               {"vehicle_from_scanner", json_of(lidar.vehicle_from_scanner)},
+               {"pulse", json_of_pulse(lidar.pulse)}};
+  if (lidar.blooming > 0) json["errors"] = json_of_errors(lidar);
+  return json;
 }
 
 Json json_of_mapper(const MapperModel& mapper) {
@@ -148,6 +190,20 @@ Json json_of_drive(const DriveOptions& drive) {
           {"speed", drive.speed},
           {"start_time", drive.start_time},
           {"seed", drive.seed}};
+}
+
+Json json_of_mapper_error(const MapperError& error) {
+  Json drift = Json::array(), boresight = Json::array(), lever_arm = Json::array();
+  for (const auto& axis : error.drift) drift.push_back(json_of_waves(axis));
+  for (const Eigen::Vector3d& angles : error.boresight) boresight.push_back(json_of(angles));
+  for (const Eigen::Vector3d& arm : error.lever_arm) lever_arm.push_back(json_of(arm));
+  return {{"drift", drift},
+          {"attitude", json_of_waves(error.attitude)},
+          {"boresight", boresight},
+          {"lever_arm", lever_arm},
+          {"intensity_gain", error.intensity_gain},
+          {"color_gain", json_of(error.color_gain)},
+          {"camera_blunders", error.has_camera_blunders}};
 }
 
 }  // namespace vdbmap::simulator

@@ -17,6 +17,7 @@ nlohmann::ordered_json json_of_street(const Street& street);
 
 nlohmann::ordered_json json_of_lidar(const LidarModel& lidar);
 nlohmann::ordered_json json_of_mapper(const MapperModel& mapper);
+nlohmann::ordered_json json_of_mapper_error(const MapperError& error);
 nlohmann::ordered_json json_of_drive(const DriveOptions& drive);
 
 }  // namespace vdbmap::simulator

@@ -84,14 +84,68 @@ SideLayout make_side(double sign, bool may_be_empty, Random& random) {
   return side;
 }
 
+// Crossings have neither crown nor roughness of their own: 0 within one, 1 from 6 m outside on.
+double calm(const SideLayout& side, double station) {
+  double share = 1;
+  for (const Lot& lot : side.lots) {
+    if (lot.kind != LotKind::kCrossing) continue;
+    const double outside = std::max({lot.along.begin - station, station - lot.along.end, 0.0});
+    share = std::min(share, outside / 6);
+  }
+  return share;
+}
+
+// Both sides may have their side street at the same place: then it is a crossing, with a view along both streets.
+void plan_rough_lots(StreetLayout& layout, Random& random) {
+  const bool has_crossroads = random.chance(0.5);
+  const double common = random.uniform(0.25, 0.75) * layout.length;
+  for (SideLayout& side : layout.sides) {
+    LotPlan plan;
+    if (layout.length >= 80) plan.side_street = has_crossroads ? common : random.uniform(0.15, 0.85) * layout.length;
+    side.lots = make_rough_lots(side, {layout.begin(), layout.end()}, plan, random);
+    add_islands(side, layout.length, random);
+  }
+}
+
+StreetLayout make_rough_layout(const StreetOptions& options) {
+  Random random(hash(options.seed, 1));
+  StreetLayout layout;
+  layout.axis = make_rough_axis(random);
+  layout.length = options.length;
+  layout.margin = options.margin;
+  layout.is_ideal = false;
+  layout.ground_depth = 130;
+  layout.scenery_depth = 130;
+  layout.sides = {make_rough_side(+1, true, random), make_rough_side(-1, false, random)};
+  plan_rough_lots(layout, random);
+  return layout;
+}
+
 }  // namespace
+
+SideLayout make_rough_side(double sign, bool may_be_empty, Random& random) {
+  SideLayout side = make_side(sign, may_be_empty, random);
+  // Narrow ones where two cars hardly pass, wide ones with room for a tram.
+  const double choice = random.uniform(0, 1);
+  if (choice < 0.2) side.lane_width = random.uniform(2.6, 3.1);
+  if (choice > 0.75) side.lane_width = random.uniform(3.8, 5.5);
+  if (random.chance(0.4)) side.pavement_width += random.uniform(0.3, 2.5);
+  if (side.housing != Housing::kBlock && random.chance(0.5)) side.garden_depth = random.uniform(4, 9);
+  return side;
+}
+
+void add_islands(SideLayout& side, double street_length, Random& random) {
+  side.islands = make_islands(side, street_length, random);
+}
 
 double StreetLayout::ground_height(double station, double offset) const {
   const SideLayout& side = side_of(offset);
   const double distance = std::abs(offset);
   const double kerb = side.kerb_offset();
-  double height = axis.height(station) - kCrossSlope * std::min(distance, kerb);
-  height += (distance > kerb ? kRoughness : kRoadRoughness) * bumps(station, offset);
+  const double calmness = calm(side, station);
+  double height = axis.hills ? axis.hills->height(axis.point(station, offset)) : axis.height(station);
+  height -= calmness * kCrossSlope * std::min(distance, kerb);
+  height += calmness * (distance > kerb ? kRoughness : kRoadRoughness) * bumps(station, offset);
   if (distance > kerb) {
     const double sloped = std::min(distance - kerb, kSlopedWidth);
     height += side.kerb_share(station) * (kKerbHeight + kPavementSlope * sloped);
@@ -118,6 +172,7 @@ Eigen::Isometry3d StreetLayout::place_lot(const SideLayout& side, const Lot& lot
 
 StreetLayout make_layout(const StreetOptions& options) {
   options.check();
+  if (!options.is_ideal) return make_rough_layout(options);
   Random random(hash(options.seed, 1));
   StreetLayout layout;
   layout.axis = make_axis(random);

@@ -17,6 +17,9 @@ struct StreetLayout {
   double length;                    ///< [m] cars park at stations 0 to `length`
   double margin;                    ///< [m] that the houses go on before and after
   std::array<SideLayout, 2> sides;  ///< left, right
+  bool is_ideal = true;             ///< as StreetOptions has it
+  double ground_depth = 70;         ///< [m] from the axis that its ground reaches
+  double scenery_depth = 70;        ///< [m] from the axis that what stands on it reaches; not on an ideal street
 
   double begin() const { return -margin; }
   double end() const { return length + margin; }
@@ -37,6 +40,12 @@ struct StreetLayout {
   /// the street.
   Eigen::Isometry3d place_lot(const SideLayout& side, const Lot& lot, double distance) const;
 };
+
+/// A side as make_layout() plans it: how cars park, what houses stand there, how wide all is; without lots.
+SideLayout make_rough_side(double sign, bool may_be_empty, Random& random);
+
+/// The trees between the spaces of a side that has its lots.
+void add_islands(SideLayout& side, double street_length, Random& random);
 
 /// Plans a street.
 StreetLayout make_layout(const StreetOptions& options);

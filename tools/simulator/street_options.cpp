@@ -22,6 +22,10 @@ void StreetOptions::check() const {
   check_range("number of epochs", num_epochs, 1, 20, "");
   check_range("occupancy", occupancy, 0, 1, "");
   check_range("turnover", turnover, 0, 1, "");
+  if (quarter_columns == 0 && quarter_rows == 0) return;
+  check_range("columns of the quarter", quarter_columns, 1, 6, "");
+  check_range("rows of the quarter", quarter_rows, 1, 6, "");
+  if (is_ideal) throw std::invalid_argument("a quarter is never ideal");
 }
 
 }  // namespace vdbmap::simulator

@@ -24,6 +24,12 @@ std::string name_of(ParkingKind kind) {
   return kNames[static_cast<std::size_t>(kind)];
 }
 
+std::string name_of(LotKind kind) {
+  constexpr std::array<const char*, 9> kNames = {"house",    "gap",  "driveway", "side street", "park",
+                                                 "car park", "hall", "open",     "crossing"};
+  return kNames[static_cast<std::size_t>(kind)];
+}
+
 std::vector<Interval> SideLayout::stretches(LotKind kind) const {
   std::vector<Interval> found;
   for (const Lot& lot : lots) {
@@ -37,7 +43,7 @@ double SideLayout::kerb_share(double station) const {
   for (const Lot& lot : lots) {
     if (lot.kind == LotKind::kDriveway) {
       share = std::min(share, kLoweredKerb + (1 - kLoweredKerb) * rise_outside(lot.along, station, kDrivewayRamp));
-    } else if (lot.kind == LotKind::kSideStreet) {
+    } else if (lot.kind == LotKind::kSideStreet || lot.kind == LotKind::kCrossing) {
       share = std::min(share, rise_outside(lot.along, station, kSideStreetRamp));
     }
   }
@@ -46,7 +52,8 @@ double SideLayout::kerb_share(double station) const {
 
 bool SideLayout::is_plain(const Interval& stretch, double margin) const {
   return std::ranges::none_of(lots, [&](const Lot& lot) {
-    const bool is_open = lot.kind == LotKind::kDriveway || lot.kind == LotKind::kSideStreet;
+    const bool is_open =
+        lot.kind == LotKind::kDriveway || lot.kind == LotKind::kSideStreet || lot.kind == LotKind::kCrossing;
     return is_open && lot.along.meets(stretch, margin);
   });
 }

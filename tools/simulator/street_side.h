@@ -30,7 +30,20 @@ enum class ParkingKind { kNone, kParallel, kHalfOnPavement, kOnPavement, kAngled
 std::string name_of(ParkingKind kind);
 
 /// What stands on a stretch behind the pavement.
-enum class LotKind { kHouse, kGap, kDriveway, kSideStreet };
+enum class LotKind {
+  kHouse,
+  kGap,
+  kDriveway,
+  kSideStreet,
+  kPark,      ///< trees and bushes on grass
+  kCarPark,   ///< rows of spaces
+  kHall,      ///< a long wall without windows
+  kOpen,      ///< nothing, and a view of 100 m
+  kCrossing,  ///< of two streets of a quarter
+};
+
+/// "house", "gap", "driveway", "side street", "park", "car park", "hall", "open", "crossing".
+std::string name_of(LotKind kind);
 
 struct Lot {
   LotKind kind;

@@ -3,13 +3,10 @@
 
 #include <vector>
 
+#include "tools/simulator/scene_view.h"
 #include "vdbmap/core/point_cloud.h"
-#include "vdbmap/io/kitti/label_file.h"
 
 namespace vdbmap::simulator {
-
-/// What a point was measured on: the numbers of SurfaceClass and of the world's object.
-using PointTruth = PointLabel;
 
 /// Points and the truth of each.
 struct Survey {

@@ -14,6 +14,7 @@ namespace vdbmap::simulator {
 namespace {
 
 using Json = nlohmann::ordered_json;
+using SeenSpaces = std::vector<SimulationRecord::SeenSpaces>;
 
 // Coordinates to a tenth of a millimetre: 17 digits would only show how doubles round.
 double rounded(double value) { return std::round(value * 1e4) / 1e4; }
@@ -27,9 +28,22 @@ Json json_of_outline(const Street& street, const ParkingSpace& space) {
   return {{"type", "Polygon"}, {"coordinates", Json::array({ring})}};
 }
 
-Json json_of_space(const Street& street, std::size_t index) {
+// What blocks the space in each epoch, and how much of it each drive saw.
+void add_rough_truth(Json& properties, const Street& street, std::size_t index, const SeenSpaces& seen) {
+  Json blocked_by = Json::array();
+  for (const auto& epoch : street.parking.thing_in_space)
+    blocked_by.push_back(epoch[index] ? Json(*epoch[index]) : Json());
+  properties["blocked_by"] = blocked_by;
+  Json visibility = Json::array();
+  for (const SimulationRecord::SeenSpaces& drive : seen) {
+    visibility.push_back({{"epoch", drive.epoch}, {"sensor", drive.sensor}, {"share", drive.shares[index]}});
+  }
+  properties["visibility"] = visibility;
+}
+
+Json json_of_space(const Street& street, std::size_t index, const SeenSpaces& seen) {
   const ParkingSpace& space = street.parking.spaces[index];
-  const SideLayout& side = street.layout.sides[space.side];
+  const SideLayout& side = street.layouts[space.street].sides[space.side];
   Json states = Json::array();
   Json vehicles = Json::array();
   for (const auto& epoch : street.parking.vehicle_in_space) {
@@ -37,18 +51,18 @@ Json json_of_space(const Street& street, std::size_t index) {
     states.push_back(vehicle ? "occupied" : "vacant");
     vehicles.push_back(vehicle ? Json(street.parking.vehicles[*vehicle].object) : Json());
   }
-  const double heading = street.layout.axis.heading_at(space.station) + space.yaw;
-  return {{"type", "Feature"},
-          {"geometry", json_of_outline(street, space)},
-          {"properties",
-           {{"id", index},
-            {"side", side.sign > 0 ? "left" : "right"},
-            {"kind", name_of(side.parking)},
-            {"length", space.length},
-            {"width", space.width},
-            {"heading", std::remainder(heading, 2 * EIGEN_PI)},
-            {"states", states},
-            {"vehicles", vehicles}}}};
+  const double heading = street.layouts[space.street].axis.heading_at(space.station) + space.yaw;
+  Json properties = {{"id", index},
+                     {"side", side.sign > 0 ? "left" : "right"},
+                     {"kind", space.in_car_park ? "car park" : name_of(side.parking)},
+                     {"length", space.length},
+                     {"width", space.width},
+                     {"heading", std::remainder(heading, 2 * EIGEN_PI)},
+                     {"states", states},
+                     {"vehicles", vehicles}};
+  if (street.layouts.size() > 1) properties["street"] = space.street;
+  if (!street.options.is_ideal) add_rough_truth(properties, street, index, seen);
+  return {{"type", "Feature"}, {"geometry", json_of_outline(street, space)}, {"properties", properties}};
 }
 
 }  // namespace
@@ -57,7 +71,7 @@ VehicleBox box_of(const Street& street, const ParkedVehicle& vehicle) {
   const Eigen::Isometry3d& frame = vehicle.scene_from_vehicle;
   const Eigen::Matrix3d& rotation = frame.linear();
   VehicleBox box;
-  box.center = street.layout.axis.origin + frame * Eigen::Vector3d(0, 0, vehicle.shape.height / 2);
+  box.center = street.origin() + frame * Eigen::Vector3d(0, 0, vehicle.shape.height / 2);
   box.size = {vehicle.shape.length, vehicle.shape.width, vehicle.shape.height};
   box.heading = std::atan2(rotation(1, 0), rotation(0, 0));
   box.pitch = -std::asin(rotation(2, 0));
@@ -66,13 +80,13 @@ VehicleBox box_of(const Street& street, const ParkedVehicle& vehicle) {
 }
 
 std::vector<Eigen::Vector3d> outline_of(const Street& street, const ParkingSpace& space) {
-  const double offset = street.layout.sides[space.side].sign * space.distance;
-  const Eigen::Isometry3d frame = street.layout.place(space.station, offset, space.yaw);
+  const double offset = street.layouts[space.street].sides[space.side].sign * space.distance;
+  const Eigen::Isometry3d frame = street.layouts[space.street].place(space.station, offset, space.yaw);
   const double x = space.length / 2;
   const double y = space.width / 2;
   std::vector<Eigen::Vector3d> corners;
   for (const auto& [along, aside] : {std::pair(x, y), std::pair(-x, y), std::pair(-x, -y), std::pair(x, -y)}) {
-    corners.emplace_back(street.layout.axis.origin + frame * Eigen::Vector3d(along, aside, 0));
+    corners.emplace_back(street.origin() + frame * Eigen::Vector3d(along, aside, 0));
   }
   return corners;
 }
@@ -84,18 +98,36 @@ void write_vehicles(const std::filesystem::path& path, const Street& street, int
     fmt::format_to(std::back_inserter(text),
                    "{},{},{:.4f},{:.4f},{:.4f},{:.4f},{:.4f},{:.4f},{:.6f},{:.6f},{:.6f},{}\n", vehicle->object,
                    name_of(vehicle->shape.body), box.center.x(), box.center.y(), box.center.z(), box.size.x(),
-                   box.size.y(), box.size.z(), box.heading, box.pitch, box.roll, vehicle->space);
+                   box.size.y(), box.size.z(), box.heading, box.pitch, box.roll,
+                   vehicle->space == kNoSpace ? -1 : static_cast<std::int64_t>(vehicle->space));
   }
   write_file(path, text);
 }
 
-void write_spaces(const std::filesystem::path& path, const Street& street) {
+void write_spaces(const std::filesystem::path& path, const Street& street,
+                  const std::vector<SimulationRecord::SeenSpaces>& seen) {
   Json features = Json::array();
-  for (std::size_t i = 0; i < street.parking.spaces.size(); ++i) features.push_back(json_of_space(street, i));
+  for (std::size_t i = 0; i < street.parking.spaces.size(); ++i) features.push_back(json_of_space(street, i, seen));
   // The member that GeoJSON had for other systems than WGS 84 before RFC 7946; GDAL and QGIS still read it.
   const Json crs = {{"type", "name"}, {"properties", {{"name", "urn:ogc:def:crs:EPSG::25832"}}}};
   const Json collection = {{"type", "FeatureCollection"}, {"crs", crs}, {"features", features}};
   write_file(path, collection.dump(1) + "\n");
+}
+
+void write_movers(const std::filesystem::path& path, const Traffic& traffic, const World& world,
+                  const Eigen::Vector3d& origin) {
+  std::string text = "object,kind,time,x,y,z,heading\n";
+  constexpr std::size_t kStep = 4;  // of the mover's poses
+  for (const Traffic::Mover& mover : traffic.movers()) {
+    for (std::size_t i = 0; i < mover.scene_from_body.size(); i += kStep) {
+      const Eigen::Isometry3d& pose = mover.scene_from_body[i];
+      const Eigen::Vector3d position = origin + pose.translation();
+      fmt::format_to(std::back_inserter(text), "{},{},{:.2f},{:.3f},{:.3f},{:.3f},{:.4f}\n", mover.object,
+                     world.objects()[mover.object].kind, mover.begin_time + Traffic::kPeriod * static_cast<double>(i),
+                     position.x(), position.y(), position.z(), std::atan2(pose.linear()(1, 0), pose.linear()(0, 0)));
+    }
+  }
+  write_file(path, text);
 }
 
 std::size_t write_changes(const std::filesystem::path& path, const Street& street) {

@@ -98,15 +98,29 @@ void add_wood(Mesh& mesh, const Tree& tree, const StandardMaterials& materials) 
   }
 }
 
-void add_crown(Mesh& mesh, const Tree& tree, int epoch) {
+void roughen(Tree& tree, Random& random) {
+  const double lean = random.chance(0.2) ? random.uniform(0.08, 0.25) : std::abs(random.normal(0, 0.03));  // [rad]
+  const double towards = random.uniform(0, 2 * std::numbers::pi);
+  tree.scene_from_foot.rotate(Eigen::AngleAxisd(lean, Point(std::cos(towards), std::sin(towards), 0)));
+  if (random.chance(0.25)) {
+    tree.trunk_radius = random.uniform(0.25, 0.5);
+    tree.crown_radius *= random.uniform(1.1, 1.7);
+    tree.crown_height *= random.uniform(1.1, 1.5);
+  }
+  tree.trunk_height *= random.uniform(0.8, 1.3);
+  tree.crown_height *= random.uniform(0.7, 1.3);
+}
+
+void add_crown(Mesh& mesh, const Tree& tree, int epoch, double leaf_share) {
   Random random(hash(tree.seed, 2));
   const Brush brush{&mesh, tree.scene_from_foot, tree.leaves, tree.object};
   const int num_clusters =
       static_cast<int>(kClustersPerSquare * tree.crown_radius * tree.crown_radius * tree.crown_height);
+  const int num_leaves = static_cast<int>(kLeavesPerCluster * leaf_share);
   for (int i = 0; i < num_clusters; ++i) {
     const Point center = place_in_crown(tree, random);
     Random leaves(random.seed());
-    if (!is_bare(tree, i, epoch)) add_cluster(brush, center, kClusterRadius, kLeavesPerCluster, leaves);
+    if (!is_bare(tree, i, epoch)) add_cluster(brush, center, kClusterRadius, num_leaves, leaves);
   }
 }
 

@@ -29,8 +29,11 @@ Tree make_low_tree(const Eigen::Isometry3d& scene_from_foot, double crown_radius
 /// Adds trunk and branches.
 void add_wood(Mesh& mesh, const Tree& tree, const StandardMaterials& materials);
 
-/// Adds the leaves of an epoch: a crown loses and gains some between epochs.
-void add_crown(Mesh& mesh, const Tree& tree, int epoch);
+/// Makes a tree one of those that planners do not draw: it leans, its trunk is thick or its crown ragged.
+void roughen(Tree& tree, Random& random);
+
+/// Adds the leaves of an epoch, or a share of them: a crown loses and gains some between epochs.
+void add_crown(Mesh& mesh, const Tree& tree, int epoch, double leaf_share = 1);
 
 /// Adds a hedge: x from 0 to `length`, y from 0 to `depth`, z from 0 to `height` [m].
 void add_hedge(const Brush& brush, const Eigen::Vector3d& size, Random& random);

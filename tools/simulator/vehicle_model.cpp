@@ -6,6 +6,8 @@
 #include <numbers>
 #include <vector>
 
+#include "tools/simulator/things/large_vehicles.h"
+
 namespace vdbmap::simulator {
 namespace {
 
@@ -244,6 +246,11 @@ class Vehicle {
 
 void add_vehicle(const Brush& paint, const VehicleShape& shape, const StandardMaterials& materials) {
   Vehicle(paint, shape, materials).draw();
+}
+
+void add_any_vehicle(const Brush& paint, const VehicleShape& shape, const World& world) {
+  if (shape.body < VehicleBody::kBoxVan) return add_vehicle(paint, shape, world.standard());
+  add_large_vehicle(paint, shape, world.vehicle(class_of(shape.body)));
 }
 
 }  // namespace vdbmap::simulator

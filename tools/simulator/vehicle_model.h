@@ -10,4 +10,7 @@ namespace vdbmap::simulator {
 /// its paint. Its windows let light through to seats and dashboard.
 void add_vehicle(const Brush& paint, const VehicleShape& shape, const StandardMaterials& materials);
 
+/// The same for a vehicle of any body.
+void add_any_vehicle(const Brush& paint, const VehicleShape& shape, const World& world);
+
 }  // namespace vdbmap::simulator

@@ -57,6 +57,24 @@ const std::array<BodyStyle, 6>& styles() {
   return kStyles;
 }
 
+// Bodies from kBoxVan on.
+struct LargeStatistics {
+  double shortest, longest;  // [m]
+  double width;              // [m]
+  double lowest, highest;    // [m]
+  double wheelbase;          // share of the length
+  double wheel_radius;       // [m]
+};
+
+constexpr std::array<LargeStatistics, 6> kLargeStatistics = {{
+    {5.0, 6.8, 2.05, 2.5, 3.1, 0.58, 0.35},   // box van
+    {6.5, 9.5, 2.45, 3.1, 3.9, 0.55, 0.48},   // truck
+    {9.5, 12.2, 2.50, 2.9, 3.2, 0.50, 0.48},  // bus
+    {4.6, 6.3, 2.20, 2.4, 2.7, 0.40, 0.33},   // caravan
+    {2.2, 3.8, 1.60, 0.9, 2.0, 0.40, 0.30},   // trailer
+    {1.9, 2.3, 0.80, 1.05, 1.25, 0.66, 0.30}  // motorcycle
+}};
+
 VehicleBody choose_body(Random& random) {
   double choice = random.uniform(0, 1);
   for (std::size_t i = 0; i < kStatistics.size(); ++i) {
@@ -74,8 +92,26 @@ double spread(double mean, double deviation, Random& random) {
 }  // namespace
 
 std::string name_of(VehicleBody body) {
-  constexpr std::array<const char*, 6> kNames = {"hatchback", "saloon", "estate", "suv", "van", "pickup"};
+  constexpr std::array<const char*, 12> kNames = {"hatchback", "saloon", "estate", "suv",     "van",     "pickup",
+                                                  "box van",   "truck",  "bus",    "caravan", "trailer", "motorcycle"};
   return kNames[static_cast<std::size_t>(body)];
+}
+
+SurfaceClass class_of(VehicleBody body) {
+  switch (body) {
+    case VehicleBody::kBoxVan:
+    case VehicleBody::kTruck:
+      return SurfaceClass::kTruck;
+    case VehicleBody::kBus:
+      return SurfaceClass::kBus;
+    case VehicleBody::kCaravan:
+    case VehicleBody::kTrailer:
+      return SurfaceClass::kOtherVehicle;
+    case VehicleBody::kMotorcycle:
+      return SurfaceClass::kMotorcycle;
+    default:
+      return SurfaceClass::kCar;
+  }
 }
 
 const BodyStyle& style_of(VehicleBody body) { return styles()[static_cast<std::size_t>(body)]; }
@@ -93,6 +129,29 @@ VehicleShape make_vehicle_shape(double longest, Random& random) {
             length * statistics.wheelbase,
             statistics.wheel_radius};
   }
+}
+
+VehicleShape make_large_shape(VehicleBody body, double longest, Random& random) {
+  const auto index = static_cast<std::size_t>(body) - static_cast<std::size_t>(VehicleBody::kBoxVan);
+  const LargeStatistics& statistics = kLargeStatistics.at(index);
+  const double upper = std::max(statistics.shortest, std::min(statistics.longest, longest));
+  const double length = random.uniform(statistics.shortest, upper);
+  return {body,
+          length,
+          spread(statistics.width, 0.02 * statistics.width, random),
+          random.uniform(statistics.lowest, statistics.highest),
+          length * statistics.wheelbase,
+          statistics.wheel_radius};
+}
+
+VehicleShape make_any_shape(double longest, Random& random) {
+  const double choice = random.uniform(0, 1);
+  if (longest > 7 && choice < 0.3) return make_large_shape(VehicleBody::kTruck, longest, random);
+  if (longest > 5 && choice < 0.04) return make_large_shape(VehicleBody::kBoxVan, longest, random);
+  if (longest > 5 && choice < 0.06) return make_large_shape(VehicleBody::kCaravan, longest, random);
+  if (choice < 0.09) return make_large_shape(VehicleBody::kTrailer, longest, random);
+  if (choice < 0.12) return make_large_shape(VehicleBody::kMotorcycle, longest, random);
+  return make_vehicle_shape(longest, random);
 }
 
 }  // namespace vdbmap::simulator

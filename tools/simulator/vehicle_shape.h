@@ -5,14 +5,33 @@
 #include <utility>
 #include <vector>
 
+#include "tools/simulator/material.h"
 #include "tools/simulator/random.h"
 
 namespace vdbmap::simulator {
 
-enum class VehicleBody { kHatchback, kSaloon, kEstate, kSuv, kVan, kPickup };
+enum class VehicleBody {
+  kHatchback,
+  kSaloon,
+  kEstate,
+  kSuv,
+  kVan,
+  kPickup,
+  // Not drawn from stations (things/large_vehicles.h):
+  kBoxVan,
+  kTruck,
+  kBus,
+  kCaravan,
+  kTrailer,
+  kMotorcycle,
+};
 
-/// "hatchback", "saloon", "estate", "suv", "van", "pickup".
+/// "hatchback", "saloon", "estate", "suv", "van", "pickup", "box van", "truck", "bus", "caravan", "trailer",
+/// "motorcycle".
 std::string name_of(VehicleBody body);
+
+/// What SemanticKITTI counts it as: a car has one continuous body, pickups included as of old.
+SurfaceClass class_of(VehicleBody body);
 
 /// A cross-section of the lower body; shares of length, half width and height.
 struct BodyStation {
@@ -35,6 +54,7 @@ struct BodyStyle {
   bool has_rear_window;
 };
 
+/// Of the first six bodies.
 const BodyStyle& style_of(VehicleBody body);
 
 /// What a car of some make measures [m]; width without mirrors, as in its papers.
@@ -49,7 +69,13 @@ struct VehicleShape {
   double track() const { return width - 0.25; }
 };
 
-/// A vehicle as German streets have them, no longer than `longest` [m].
+/// A car as German streets have them, no longer than `longest` [m].
 VehicleShape make_vehicle_shape(double longest, Random& random);
+
+/// A vehicle of a body other than the first six, no longer than `longest` [m] where there are such.
+VehicleShape make_large_shape(VehicleBody body, double longest, Random& random);
+
+/// A car or, one time in eight, a box van, caravan, trailer or motorcycle; where there is room for 7 m, a truck.
+VehicleShape make_any_shape(double longest, Random& random);
 
 }  // namespace vdbmap::simulator

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "tools/simulator/world.h"
 
+#include <array>
 #include <limits>
 #include <stdexcept>
 #include <utility>
@@ -64,6 +65,25 @@ void add_vehicles(World& world, StandardMaterials& m) {
   m.plate = world.add_material({kCar, Color(.90F, .90F, .88F), 2.0F});
 }
 
+VehicleMaterials add_vehicle_materials(World& world, SurfaceClass label) {
+  VehicleMaterials m{};
+  m.glass = world.add_material({label, Color(.14F, .17F, .19F), .05F, .78F, .8F});
+  m.tyre = world.add_material({label, Color(.10F, .10F, .10F), .06F});
+  m.rim = world.add_material({label, Color(.66F, .67F, .68F), .40F, 0, .5F});
+  m.interior = world.add_material({label, Color(.16F, .16F, .17F), .20F});
+  m.trim = world.add_material({label, Color(.13F, .13F, .14F), .08F});
+  m.headlight = world.add_material({label, Color(.80F, .82F, .84F), .80F, 0, .3F});
+  m.tail_light = world.add_material({label, Color(.60F, .08F, .08F), 1.2F});
+  m.plate = world.add_material({label, Color(.90F, .90F, .88F), 2.0F});
+  return m;
+}
+
+void add_rough(World& world, StandardMaterials& m) {
+  m.twigs = world.add_material({kVegetation, Color(.33F, .27F, .20F), .35F, 0, 0, Texture::kWood});
+  m.snow = world.add_material({kOtherObject, Color(.90F, .91F, .93F), .70F});
+  m.plaster = world.add_material({kBuilding, Color(.78F, .76F, .72F), .50F, 0, 0, Texture::kPlaster});
+}
+
 // Numbers are 16 bits wide in Triangle and in .label files.
 std::uint16_t next_number(std::size_t count, const char* what) {
   if (count < std::numeric_limits<std::uint16_t>::max()) return static_cast<std::uint16_t>(count);
@@ -78,6 +98,32 @@ World::World() {
   add_gardens(*this, standard_);
   add_furniture(*this, standard_);
   add_vehicles(*this, standard_);
+  // Behind all others, so that these keep their numbers.
+  add_rough(*this, standard_);
+  const StandardMaterials& m = standard_;
+  vehicles_[kCar] = {m.car_glass, m.tyre, m.rim, m.car_interior, m.car_trim, m.headlight, m.tail_light, m.plate};
+  for (const SurfaceClass label : {kTruck, kBus, kOtherVehicle, kMotorcycle, kMotorcyclist, kBicyclist}) {
+    vehicles_[label] = add_vehicle_materials(*this, label);
+  }
+}
+
+MaterialId World::add_paint(SurfaceClass label, Random& random) {
+  const std::array<Color, 8> colors = {{{.08F, .08F, .09F},
+                                        {.30F, .31F, .33F},
+                                        {.55F, .57F, .58F},
+                                        {.93F, .93F, .92F},
+                                        {.13F, .20F, .42F},
+                                        {.55F, .08F, .09F},
+                                        {.20F, .30F, .24F},
+                                        {.75F, .70F, .25F}}};
+  const std::array<float, 8> reflectances = {.03F, .15F, .35F, .65F, .25F, .40F, .25F, .50F};
+  const std::size_t color = random.index(colors.size());
+  return add_material({label, colors[color], reflectances[color], 0, static_cast<float>(random.uniform(0.3, 0.55))});
+}
+
+const VehicleMaterials& World::vehicle(SurfaceClass label) const {
+  const auto found = vehicles_.find(label);
+  return found == vehicles_.end() ? vehicles_.at(kCar) : found->second;
 }
 
 MaterialId World::add_material(const Material& material) {

@@ -21,13 +21,13 @@ std::set<ObjectId> vehicles_of(const Street& street, int epoch) {
 
 // Whether a point lies in the box, or no farther from it than mirrors and half a voxel's diagonal reach.
 bool is_in_box(const Street& street, const ParkedVehicle& vehicle, const Eigen::Vector3d& point) {
-  const Eigen::Vector3d p = vehicle.scene_from_vehicle.inverse() * (point - street.layout.axis.origin);
+  const Eigen::Vector3d p = vehicle.scene_from_vehicle.inverse() * (point - street.origin());
   return std::abs(p.x()) < vehicle.shape.length / 2 + 0.1 && std::abs(p.y()) < vehicle.shape.width / 2 + 0.25 &&
          p.z() > -0.1 && p.z() < vehicle.shape.height + 0.1;
 }
 
 TEST(Changes, CarsThatLeftVanishAndCarsThatCameAppearWhereTheyStood) {
-  const Street street = make_street({.length = 40, .margin = 5, .turnover = 0.5});
+  const Street street = make_street({.length = 40, .margin = 5, .turnover = 0.5, .is_ideal = true});
   const std::set<ObjectId> before = vehicles_of(street, 0), after = vehicles_of(street, 1);
   std::set<ObjectId> changed;
   for (const ChangedVoxel& voxel : changed_voxels(street, 0)) {
@@ -47,7 +47,7 @@ TEST(Changes, CarsThatLeftVanishAndCarsThatCameAppearWhereTheyStood) {
 }
 
 TEST(Changes, CarsThatStayChangeNothing) {
-  const Street street = make_street({.length = 30, .margin = 5, .occupancy = 1, .turnover = 0});
+  const Street street = make_street({.length = 30, .margin = 5, .occupancy = 1, .turnover = 0, .is_ideal = true});
   const auto changes = changed_voxels(street, 0);
   EXPECT_FALSE(changes.empty());  // people, bicycles, bins and leaves
   EXPECT_TRUE(std::ranges::none_of(changes, [](const ChangedVoxel& voxel) { return voxel.label == kCar; }));

@@ -37,7 +37,7 @@ Limits limits_of(const Drive& drive) {
 
 TEST(Drive, AcceleratesPitchesAndRollsLikeACar) {
   for (const std::uint64_t seed : {1, 2, 3, 4, 5}) {
-    const StreetLayout layout = make_layout({.seed = seed});
+    const StreetLayout layout = make_layout({.seed = seed, .is_ideal = true});
     const Limits limits = limits_of(Drive(layout, {.from = 10, .to = 165, .speed = 9, .seed = seed}));
     EXPECT_GT(limits.speed_min, 5);
     EXPECT_LT(limits.speed_max, 13);
@@ -51,7 +51,7 @@ TEST(Drive, AcceleratesPitchesAndRollsLikeACar) {
 }
 
 TEST(Drive, GoesFromItsFirstStationToItsLast) {
-  const StreetLayout layout = make_layout({});
+  const StreetLayout layout = make_layout({.is_ideal = true});
   const Drive drive(layout, {.from = 20, .to = 120, .speed = 9, .start_time = 1000});
   EXPECT_EQ(drive.start_time(), 1000);
   const auto distance_to = [&](double time, double station) {
@@ -63,7 +63,7 @@ TEST(Drive, GoesFromItsFirstStationToItsLast) {
 
 // Between poses a millisecond apart, where the fastest sway is 4 Hz, nothing jumps.
 TEST(Drive, PosesAreSmooth) {
-  const StreetLayout layout = make_layout({});
+  const StreetLayout layout = make_layout({.is_ideal = true});
   const Drive drive(layout, {.from = 20, .to = 60});
   for (double t = 1; t < 3; t += 0.00037) {
     const Eigen::Isometry3d a = drive.scene_from_vehicle(t), b = drive.scene_from_vehicle(t + 0.00037);

@@ -69,7 +69,7 @@ struct PlanesAndDrive {
     return std::min(std::abs(wall_normal.dot(point) - wall_distance), std::abs(point.z() - ground));
   }
 
-  StreetLayout layout = make_layout({});
+  StreetLayout layout = make_layout({.is_ideal = true});
   Drive drive{layout, {.from = 50, .to = 80, .speed = 9, .seed = 3}};
   SimpleScene scene;
   Eigen::Vector3d wall_normal;
@@ -121,6 +121,82 @@ TEST(Lidar, PointsComeInTheOrderOfTimeWithTheAzimuthOfTheirTime) {
     EXPECT_NEAR(azimuth, 0, 1e-5);
     EXPECT_NEAR(std::asin(p.z() / p.norm()), lidar.lasers[0].elevation + 2 * kDegree * scan.cloud.rings[i], 1e-5);
   }
+}
+
+TEST(LidarErrors, StayWithinTwoCentimetresATenthOfADegreeAndAMillisecond) {
+  for (const std::uint64_t seed : {1, 2, 3}) {
+    const LidarModel lidar = with_errors(hdl64(), seed);
+    double largest_bias = 0, largest_angle = 0;
+    for (const Laser& laser : lidar.lasers) {
+      largest_bias = std::max(largest_bias, std::abs(laser.range_bias));
+      largest_angle = std::max(largest_angle, std::abs(laser.elevation_error) / kDegree);
+    }
+    EXPECT_GT(largest_bias, 0.01);
+    EXPECT_LE(largest_bias, 0.02);
+    EXPECT_GT(largest_angle, 0.05);
+    EXPECT_LE(largest_angle, 0.1 + 1e-9);
+    EXPECT_LE(std::abs(lidar.clock_error), 0.001);
+    EXPECT_NE(lidar.clock_error, 0);
+  }
+}
+
+// A beam that looks higher than the scanner believes measures the ground farther away, but says the elevation it
+// believes.
+TEST(LidarErrors, ElevationsAreWhatTheScannerBelievesAndRangesWhatIsThere) {
+  const PlanesAndDrive planes;
+  LidarModel lidar = vlp16();
+  const Survey right = scan_planes(planes, lidar);
+  for (Laser& laser : lidar.lasers) laser.elevation_error = 0.1 * kDegree;
+  lidar.clock_error = 0.0005;
+  const Survey wrong = scan_planes(planes, lidar);
+  // The lowest beam to the right, where there is no wall.
+  const auto mean_range = [](const Survey& scan) {
+    double sum = 0;
+    int count = 0;
+    for (std::size_t i = 0; i < scan.cloud.size(); ++i) {
+      const Eigen::Vector3d& p = scan.cloud.positions[i];
+      if (scan.cloud.rings[i] != 0 || p.y() > -2) continue;
+      EXPECT_NEAR(std::asin(p.normalized().z()), -15 * kDegree, 1e-5);
+      sum += p.norm();
+      ++count;
+    }
+    EXPECT_GT(count, 300);
+    return sum / count;
+  };
+  // At 15 degrees down the range to level ground grows by cot(15 degrees) * 0.1 degrees.
+  EXPECT_NEAR(mean_range(wrong) / mean_range(right), 1 + 0.1 * kDegree / std::tan(15 * kDegree), 0.0005);
+  EXPECT_NEAR(wrong.cloud.times.front() - right.cloud.times.front(), 0.0005, 1e-9);
+}
+
+// A small bright plate before a wall: beside it some pulses measure the plate's distance, and belong to nothing.
+TEST(LidarErrors, RetroreflectorsBloom) {
+  PlanesAndDrive planes;
+  const Eigen::Isometry3d scanner = planes.drive.scene_from_vehicle(0.5) * vlp16().vehicle_from_scanner;
+  Brush plate = planes.scene.brush(2.0F);
+  plate.scene_from_part = scanner;
+  add_quad(plate, {8, -0.4, -0.4}, {8, 0.4, -0.4}, {8, 0.4, 0.4}, {8, -0.4, 0.4});
+  LidarModel lidar = vlp16();
+  lidar.blooming = 0.5;
+  const Survey scan = scan_planes(planes, lidar);
+  int num_ghosts = 0;
+  for (std::size_t i = 0; i < scan.truth.size(); ++i) {
+    if (scan.truth[i].label != static_cast<std::uint16_t>(SurfaceClass::kOutlier)) continue;
+    ++num_ghosts;
+    EXPECT_NEAR(scan.cloud.positions[i].norm(), 8, 1);  // the scanner drives 0.9 m during the turn
+  }
+  EXPECT_GT(num_ghosts, 3);
+  EXPECT_LT(num_ghosts, 120);
+}
+
+TEST(Lidar, NamedScannersHaveTheBeamsOfTheirSheets) {
+  const LidarModel thirty_two = hdl32();
+  ASSERT_EQ(thirty_two.lasers.size(), 32U);
+  const auto [low, high] = std::ranges::minmax(thirty_two.lasers, {}, &Laser::elevation);
+  EXPECT_NEAR(low.elevation / kDegree, -30.67, 0.01);
+  EXPECT_NEAR(high.elevation / kDegree, 10.67, 0.01);
+  const LidarModel ouster = os1_128();
+  ASSERT_EQ(ouster.lasers.size(), 128U);
+  EXPECT_NEAR(ouster.lasers.back().elevation / kDegree, 22.5, 1e-9);
 }
 
 }  // namespace

@@ -28,7 +28,7 @@ struct GroundAndDrive {
     return map_street({scene.mesh, scene.materials, caster}, drive, mapper, Daylight{{0, 0, 1}}, kOrigin, 1);
   }
 
-  StreetLayout layout = make_layout({});
+  StreetLayout layout = make_layout({.is_ideal = true});
   Drive drive{layout, {.from = 80, .to = 82}};
   SimpleScene scene;
   double ground = 0;

@@ -15,7 +15,10 @@ struct ParkedStreet {
   World world;
   Parking parking;
 
-  explicit ParkedStreet(const StreetOptions& options) : layout(make_layout(options)) {
+  // An ideal one.
+  explicit ParkedStreet(StreetOptions options) {
+    options.is_ideal = true;
+    layout = make_layout(options);
     parking = make_parking(world, layout, options);
   }
 };

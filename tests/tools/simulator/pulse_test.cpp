@@ -97,5 +97,16 @@ TEST(Pulse, SurfacesFarBehindEachOtherAreNotMixed) {
   }
 }
 
+// 12 m of rain with a chance of 0.002 a metre: one pulse in 42 measures a drop, nearer than the wall.
+TEST(Pulse, RainMakesSpecksBeforeSurfaces) {
+  SimpleScene scene;
+  add_wall_across(scene.brush(0.5F), 20, 10);
+  constexpr int kCount = 20'000;
+  const std::vector<double> ranges = ranges_along_x(scene, {.specks = 0.002}, kCount);
+  ASSERT_EQ(ranges.size(), static_cast<std::size_t>(kCount));
+  const auto num_specks = std::ranges::count_if(ranges, [](double range) { return range < 12; });
+  EXPECT_NEAR(static_cast<double>(num_specks), 0.024 * kCount, 4 * std::sqrt(0.024 * kCount));
+}
+
 }  // namespace
 }  // namespace vdbmap::simulator

@@ -30,6 +30,7 @@ SimulateOptions short_street() {
   options.street.length = 30;
   options.street.margin = 10;
   options.street.occupancy = 1;
+  options.street.is_ideal = true;
   options.num_scans = 3;
   return options;
 }
@@ -200,9 +201,9 @@ TEST_F(Simulation, SameSeedGivesSameBytesForAnyNumberOfThreads) {
 TEST(SimulateOptions, ParsesSensorsWithAndWithoutTheirEpoch) {
   const std::vector<SensorUse> uses = parse_sensors("mapper,hdl64@3");
   ASSERT_EQ(uses.size(), 2U);
-  EXPECT_EQ(uses[0].sensor, Sensor::kMapper);
+  EXPECT_TRUE(uses[0].sensor.is_mapper());
   EXPECT_FALSE(uses[0].epoch);
-  EXPECT_EQ(uses[1].sensor, Sensor::kHdl64);
+  EXPECT_EQ(uses[1].sensor.name, "hdl64");
   EXPECT_EQ(uses[1].epoch, 3);
   for (const char* text : {"", "radar", "vlp16,", "vlp16@", "vlp16@x", "vlp16@-1", "vlp16@1@2", "@1"}) {
     EXPECT_THROW(parse_sensors(text), std::invalid_argument) << text;

@@ -12,7 +12,7 @@ namespace {
 constexpr double kBumps = 0.02;  // [m] more than the roughness of any two neighbours
 
 TEST(StreetLayout, CarriagewayFallsFromItsCrownToTheGutter) {
-  const StreetLayout layout = make_layout({});
+  const StreetLayout layout = make_layout({.is_ideal = true});
   for (const SideLayout& side : layout.sides) {
     for (double s = 5; s < 170; s += 7.3) {
       const double fall = layout.ground_height(s, 0) - layout.ground_height(s, side.sign * side.kerb_offset());
@@ -22,7 +22,7 @@ TEST(StreetLayout, CarriagewayFallsFromItsCrownToTheGutter) {
 }
 
 TEST(StreetLayout, KerbIsTwelveCentimetresHighExceptAtDrivewaysAndSideStreets) {
-  const StreetLayout layout = make_layout({.seed = 2});
+  const StreetLayout layout = make_layout({.seed = 2, .is_ideal = true});
   for (const SideLayout& side : layout.sides) {
     const auto step = [&](double s) {
       return layout.ground_height(s, side.sign * (side.kerb_offset() + 1e-6)) -
@@ -43,7 +43,7 @@ TEST(StreetLayout, KerbIsTwelveCentimetresHighExceptAtDrivewaysAndSideStreets) {
 
 TEST(StreetLayout, LotsFollowEachOtherWithoutGapsOverTheWholeStreet) {
   for (const std::uint64_t seed : {1, 2, 3}) {
-    const StreetLayout layout = make_layout({.seed = seed});
+    const StreetLayout layout = make_layout({.seed = seed, .is_ideal = true});
     for (const SideLayout& side : layout.sides) {
       EXPECT_EQ(side.lots.front().along.begin, layout.begin());
       EXPECT_GE(side.lots.back().along.end, layout.end());
@@ -57,7 +57,7 @@ TEST(StreetLayout, LotsFollowEachOtherWithoutGapsOverTheWholeStreet) {
 
 // Real streets repeat their houses: so localization has something to confuse.
 TEST(StreetLayout, HousesOfOneTypeStandMoreThanOnceOnEachSide) {
-  const StreetLayout layout = make_layout({});
+  const StreetLayout layout = make_layout({.is_ideal = true});
   for (const SideLayout& side : layout.sides) {
     EXPECT_EQ(side.house_types.size(), 4U);
     EXPECT_GE(side.stretches(LotKind::kHouse).size(), 12U);
@@ -65,7 +65,7 @@ TEST(StreetLayout, HousesOfOneTypeStandMoreThanOnceOnEachSide) {
 }
 
 TEST(StreetLayout, PlacesStandOnTheGroundAndLookAlongTheStreet) {
-  const StreetLayout layout = make_layout({});
+  const StreetLayout layout = make_layout({.is_ideal = true});
   const Eigen::Isometry3d a = layout.place(50, -2);
   const Eigen::Isometry3d b = layout.place(50.5, -2);
   EXPECT_EQ(a.translation().z(), layout.ground_height(50, -2));
@@ -75,7 +75,8 @@ TEST(StreetLayout, PlacesStandOnTheGroundAndLookAlongTheStreet) {
 }
 
 TEST(StreetLayout, AnotherSeedIsAnotherStreetAndTheSameTheSame) {
-  const StreetLayout a = make_layout({.seed = 1}), b = make_layout({.seed = 1}), c = make_layout({.seed = 2});
+  const StreetLayout a = make_layout({.seed = 1, .is_ideal = true}), b = make_layout({.seed = 1, .is_ideal = true}),
+                     c = make_layout({.seed = 2, .is_ideal = true});
   EXPECT_EQ(a.axis.origin, b.axis.origin);
   EXPECT_EQ(a.ground_height(30, 5), b.ground_height(30, 5));
   EXPECT_NE(a.axis.origin, c.axis.origin);

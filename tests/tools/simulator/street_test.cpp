@@ -21,16 +21,16 @@ std::set<std::uint16_t> labels_of(const Street& street, const Mesh& mesh) {
 TEST(Street, HoldsEverythingAStreetHas) {
   std::set<std::uint16_t> found;
   for (const std::uint64_t seed : {1, 2}) {
-    const Street street = make_street({.seed = seed, .length = 90, .margin = 5, .num_epochs = 1});
+    const Street street = make_street({.seed = seed, .length = 90, .margin = 5, .num_epochs = 1, .is_ideal = true});
     found.merge(labels_of(street, street.mesh(0)));
   }
-  for (const auto& [label, name] : label_names()) {
+  for (const auto& [label, name] : label_names(true)) {
     EXPECT_TRUE(found.contains(static_cast<std::uint16_t>(label))) << name;
   }
 }
 
 TEST(Street, EpochsShareWhatLastsAndEveryTriangleHasAMaterialAndAnObject) {
-  const Street street = make_street({.length = 40, .margin = 5, .num_epochs = 3});
+  const Street street = make_street({.length = 40, .margin = 5, .num_epochs = 3, .is_ideal = true});
   EXPECT_EQ(street.changing.size(), 3U);
   for (int epoch = 0; epoch < 3; ++epoch) {
     const Mesh mesh = street.mesh(epoch);
@@ -42,6 +42,46 @@ TEST(Street, EpochsShareWhatLastsAndEveryTriangleHasAMaterialAndAnObject) {
       ASSERT_LT(std::max({t.a, t.b, t.c}), mesh.vertices.size());
     }
     for (const Eigen::Vector3f& vertex : mesh.vertices) ASSERT_TRUE(vertex.allFinite());
+  }
+}
+
+// Over a few seeds everything that a real street has stands there, but for what only moves or is no surface.
+TEST(Street, RoughOnesHoldMoreKindsOfThings) {
+  std::set<std::uint16_t> found;
+  std::set<LotKind> lots;
+  for (const std::uint64_t seed : {1, 2, 3, 4}) {
+    const Street street = make_street({.seed = seed, .length = 120, .margin = 20, .num_epochs = 1});
+    found.merge(labels_of(street, street.mesh(0)));
+  }
+  for (std::uint64_t seed = 1; seed <= 20; ++seed) {
+    for (const SideLayout& side : make_layout({.seed = seed}).sides) {
+      for (const Lot& lot : side.lots) lots.insert(lot.kind);
+    }
+  }
+  for (const auto& [label, name] : label_names(false)) {
+    using enum SurfaceClass;
+    const bool only_moves = label >= kMovingCar || label == kBus || label == kMotorcyclist || label == kOutlier;
+    EXPECT_TRUE(only_moves || found.contains(static_cast<std::uint16_t>(label))) << name;
+  }
+  for (const LotKind kind : {LotKind::kPark, LotKind::kCarPark, LotKind::kHall, LotKind::kOpen, LotKind::kSideStreet}) {
+    EXPECT_TRUE(lots.contains(kind)) << name_of(kind);
+  }
+}
+
+TEST(Street, VehiclesElsewhereBlockNoSpaceAndThingsOnlyVacantOnes) {
+  for (const std::uint64_t seed : {1, 2, 3}) {
+    const Street street = make_street({.seed = seed, .length = 120, .margin = 20});
+    for (const std::size_t epoch : {0, 1}) {
+      EXPECT_FALSE(street.parking.elsewhere[epoch].empty());
+      for (const std::size_t vehicle : street.parking.elsewhere[epoch]) {
+        EXPECT_EQ(street.parking.vehicles[vehicle].space, kNoSpace);
+      }
+      for (std::size_t i = 0; i < street.parking.spaces.size(); ++i) {
+        if (street.parking.thing_in_space[epoch][i]) {
+          EXPECT_FALSE(street.parking.vehicle_in_space[epoch][i]);
+        }
+      }
+    }
   }
 }
 

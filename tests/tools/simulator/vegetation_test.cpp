@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "tools/simulator/vegetation.h"
 
+#include <cmath>
+
 #include <gtest/gtest.h>
 
 #include "tools/simulator/ray_caster.h"
@@ -65,6 +67,28 @@ TEST(Vegetation, HedgesFillTheirSizeAndNoMore) {
   for (const Eigen::Vector3f& vertex : mesh.vertices) box.extend(vertex);
   EXPECT_TRUE(box.sizes().isApprox(Eigen::Vector3f(4, 0.6F, 1.5F), 0.15F)) << box.sizes().transpose();
   EXPECT_LT(box.max().z(), 1.5F);
+}
+
+TEST(Vegetation, SomeTreesLeanAndSomeAreThick) {
+  Random random(8);
+  int num_leaning = 0, num_thick = 0;
+  for (int i = 0; i < 200; ++i) {
+    Tree tree = one_tree();
+    roughen(tree, random);
+    num_leaning += tree.scene_from_foot.linear()(2, 2) < std::cos(0.08) ? 1 : 0;
+    num_thick += tree.trunk_radius > 0.25 ? 1 : 0;
+    EXPECT_GT(tree.scene_from_foot.linear()(2, 2), std::cos(0.26));
+  }
+  EXPECT_GT(num_leaning, 20);
+  EXPECT_GT(num_thick, 20);
+  EXPECT_LT(num_thick, 100);
+}
+
+TEST(Vegetation, FewLeavesHangOnInWinter) {
+  Mesh summer, winter;
+  add_crown(summer, one_tree(), 0);
+  add_crown(winter, one_tree(), 0, 0.1);
+  EXPECT_NEAR(static_cast<double>(winter.triangles.size()), 0.1 * static_cast<double>(summer.triangles.size()), 10);
 }
 
 }  // namespace
