@@ -20,6 +20,7 @@ class LotPainter {
              std::vector<Tree>& trees)
       : world_(world),
         mesh_(mesh),
+        layout_(layout),
         side_(side),
         lot_(lot),
         trees_(trees),
@@ -205,6 +206,7 @@ class LotPainter {
 
   World& world_;
   Mesh& mesh_;
+  const StreetLayout& layout_;
   const SideLayout& side_;
   const Lot& lot_;
   std::vector<Tree>& trees_;

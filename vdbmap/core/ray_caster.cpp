@@ -170,8 +170,9 @@ bool walk(const RayNodes& nodes, const Path& path, const RayRange& range, End& r
   openvdb::Coord corner;
   for (std::size_t axis = 0; axis < 3; ++axis) {
     const auto i = static_cast<int>(axis);
-    const double place = path.origin[axis] + arrival.distance * path.direction[axis];
-    const int voxel = std::clamp(static_cast<int>(std::floor(place)), box.min()[i], box.max()[i]);
+    const double place = std::floor(path.origin[axis] + arrival.distance * path.direction[axis]);
+    // Of a ray that is no number, the last one.
+    const auto voxel = static_cast<int>(std::max<double>(box.min()[i], std::min<double>(box.max()[i], place)));
     corner[i] = voxel & ~(kSize - 1);
   }
   while (true) {
