@@ -5,6 +5,7 @@
 #include <csignal>
 #include <cstdlib>
 #include <ctime>
+#include <memory>
 #include <string>
 #include <vector>
 
@@ -48,8 +49,8 @@ TEST(ChildProcess, TimeIsLimited) {
 TEST(ChildProcess, MemoryIsLimited) {
   if (test::kIsSanitized) return;  // the sanitizer takes all addresses
   const auto take_memory = [] {
-    std::vector<std::vector<char>> taken;
-    while (true) taken.emplace_back(std::size_t{1} << 24);
+    std::vector<std::unique_ptr<char[]>> taken;  // addresses: what is not touched takes no memory
+    while (true) taken.push_back(std::make_unique_for_overwrite<char[]>(std::size_t{1} << 24));
     return ExitCode::kDone;
   };
   EXPECT_EQ(test::io_error_of([&] { run_in_child("a.vdb", take_memory, {.memory_bytes = std::uint64_t{4} << 30}); }),

@@ -91,7 +91,7 @@ TEST(MapTiles, GiveTheMapAgainInWhateverOrderTheyCome) {
   std::vector<VoxelMap> tiles = cut_all(map);
   EXPECT_EQ(test::difference(splice(tiles), map), "");
   std::ranges::reverse(tiles);
-  std::ranges::rotate(tiles, tiles.begin() + 5);
+  std::rotate(tiles.begin(), tiles.begin() + 5, tiles.end());
   for (const int threads : {1, 4}) {
     EXPECT_EQ(test::difference(test::on_threads(threads, [&] { return splice(tiles); }), map), "") << threads;
   }
