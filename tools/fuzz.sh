@@ -3,7 +3,7 @@
 # tools/fuzz.sh MINUTES [TARGET...]: installs what is missing, builds the fuzz targets of tests/fuzz and runs each, or those named, for so many
 # minutes: 2 GB of memory, 10 s an input. Prints a line a target; what broke one lies in build/fuzz/findings, and the exit code is then 1.
 set -euo pipefail
-if (($# < 1)) || [[ ! $1 =~ ^[0-9]+$ ]]; then
+if (($# < 1)) || [[ ! $1 =~ ^[1-9][0-9]*$ ]]; then
   echo "usage: tools/fuzz.sh MINUTES [TARGET...]" >&2
   exit 2
 fi

@@ -5,10 +5,11 @@
 
 #include <gtest/gtest.h>
 
+#include "tests/support/sanitizers.h"
 #include "tests/tools/map_command.h"
 
 // Sanitizers take more addresses than any limit leaves.
-#if !defined(__SANITIZE_ADDRESS__) && !defined(__SANITIZE_THREAD__)
+#ifndef VDBMAP_IS_SANITIZED
 
 namespace vdbmap::cli {
 namespace {

@@ -23,6 +23,18 @@ namespace {
 
 constexpr int kOutOfMemory = 100;  // no exit code of a command
 
+#if defined(__SANITIZE_ADDRESS__)
+constexpr bool kHasAddressSanitizer = true;
+#elif defined(__has_feature)
+#if __has_feature(address_sanitizer)
+constexpr bool kHasAddressSanitizer = true;
+#else
+constexpr bool kHasAddressSanitizer = false;
+#endif
+#else
+constexpr bool kHasAddressSanitizer = false;
+#endif
+
 void limit(__rlimit_resource resource, std::uint64_t value) {
   const rlimit both{value, value};
   ::setrlimit(resource, &both);
@@ -30,9 +42,7 @@ void limit(__rlimit_resource resource, std::uint64_t value) {
 
 // Whether the limit is ours: a lower one that this process has already stays, and is not the file's fault.
 bool limit_memory(std::uint64_t bytes) {
-#if defined(__SANITIZE_ADDRESS__) || (defined(__has_feature) && __has_feature(address_sanitizer))
-  return false;  // which takes terabytes of addresses
-#endif
+  if (kHasAddressSanitizer) return false;  // which takes terabytes of addresses
   rlimit now{};
   if (bytes == 0 || ::getrlimit(RLIMIT_AS, &now) != 0 || now.rlim_cur <= bytes) return false;
   limit(RLIMIT_AS, bytes);

@@ -8,6 +8,7 @@
 #include <utility>
 #include <vector>
 
+#include <openvdb/Types.h>
 #include <openvdb/math/Coord.h>
 #include <openvdb/math/Vec3.h>
 
