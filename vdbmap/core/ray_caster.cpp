@@ -161,6 +161,9 @@ int axis_of_entry(const Path& path, const openvdb::CoordBBox& box, double distan
 bool walk(const RayNodes& nodes, const Path& path, const RayRange& range, End& result) {
   const openvdb::CoordBBox& box = nodes.box();
   if (box.empty()) return false;
+  double sum = 0;
+  for (std::size_t axis = 0; axis < 3; ++axis) sum += path.origin[axis] + path.direction[axis];
+  if (!std::isfinite(sum)) return false;  // a ray that is no number meets nothing
   const std::optional<RayRange> inside = clip(path, box, range);
   if (!inside) return false;
   Arrival arrival{inside->begin};
@@ -170,9 +173,8 @@ bool walk(const RayNodes& nodes, const Path& path, const RayRange& range, End& r
   openvdb::Coord corner;
   for (std::size_t axis = 0; axis < 3; ++axis) {
     const auto i = static_cast<int>(axis);
-    const double place = std::floor(path.origin[axis] + arrival.distance * path.direction[axis]);
-    // Of a ray that is no number, the last one.
-    const auto voxel = static_cast<int>(std::max<double>(box.min()[i], std::min<double>(box.max()[i], place)));
+    const double place = path.origin[axis] + arrival.distance * path.direction[axis];
+    const int voxel = std::clamp(static_cast<int>(std::floor(place)), box.min()[i], box.max()[i]);
     corner[i] = voxel & ~(kSize - 1);
   }
   while (true) {
