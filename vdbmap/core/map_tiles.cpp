@@ -79,13 +79,11 @@ bool have_same_channels(const VoxelLevel& a, const VoxelLevel& b) {
   for_each_channel([&](const char* /*name*/, auto channel) {
     are_same &= (a.channels().*channel).empty() == (b.channels().*channel).empty();
   });
-  return are_same || a.size() == 0 || b.size() == 0;
+  return are_same;
 }
 
 void check_alike(const VoxelMap& a, const VoxelMap& b) {
-  const auto is_alike = [](const VoxelLevel& x, const VoxelLevel& y) {
-    return x.voxel_size() == y.voxel_size() && have_same_channels(x, y);
-  };
+  const auto is_alike = [](const VoxelLevel& x, const VoxelLevel& y) { return x.voxel_size() == y.voxel_size(); };
   const bool are_alike = a.frame == b.frame && a.has_color == b.has_color && a.label_scheme == b.label_scheme &&
                          std::ranges::equal(a.levels, b.levels, is_alike);
   if (!are_alike) throw std::invalid_argument("maps of different frames, levels or attributes cannot be spliced");
@@ -105,11 +103,18 @@ VoxelLevel splice_level(std::span<const VoxelMap> maps, std::size_t number) {
     list_leaves(
         map.levels[number], [](const VoxelLeaf&) { return true; }, sources);
   parallel_sort(sources, std::less<>());
+  // Of levels without voxels nothing is known: those with some are compared.
+  const VoxelLevel& like = occupied_level(maps, number);
+  for (const VoxelMap& map : maps) {
+    if (map.levels[number].size() > 0 && !have_same_channels(map.levels[number], like)) {
+      throw std::invalid_argument("maps of different attributes cannot be spliced");
+    }
+  }
   const auto same_key = [](const LeafSource& a, const LeafSource& b) { return a.key == b.key; };
   if (std::ranges::adjacent_find(sources, same_key) != sources.end()) {
     throw std::invalid_argument("maps that have a leaf in common cannot be spliced");
   }
-  return level_of(std::move(sources), occupied_level(maps, number));
+  return level_of(std::move(sources), like);
 }
 
 }  // namespace

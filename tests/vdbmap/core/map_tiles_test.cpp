@@ -4,7 +4,9 @@
 #include <algorithm>
 #include <random>
 #include <set>
+#include <span>
 #include <stdexcept>
+#include <utility>
 
 #include <gtest/gtest.h>
 
@@ -119,6 +121,19 @@ TEST(MapTiles, WhatDoesNotBelongTogetherIsNotSpliced) {
   EXPECT_THROW(splice(with_tile([](VoxelMap& other) { other.frame.anchor.x() += 64; })), std::invalid_argument);
   EXPECT_THROW(splice(with_tile([](VoxelMap& other) { other.levels.pop_back(); })), std::invalid_argument);
   EXPECT_THROW(splice(with_tile([](VoxelMap& other) { other.has_color = true; })), std::invalid_argument);
+  // Also behind a map that has no voxels, and so no attributes of its own.
+  for (const TileId& first : {TileId{99, 99}, TileId{2, 0}}) {
+    std::vector<VoxelMap> maps{cut_tile(map, first), tile, cut_tile(map, {1, 0})};
+    for (VoxelLevel& level : maps.back().levels) {
+      VoxelChannels channels = level.channels();
+      channels.intensities.clear();
+      const std::span<const VoxelLeaf> leaves = level.leaves();
+      const std::span<const VoxelRecord> records = std::as_const(level).records();
+      level =
+          VoxelLevel(level.voxel_size(), {leaves.begin(), leaves.end()}, {records.begin(), records.end()}, channels);
+    }
+    EXPECT_THROW(splice(maps), std::invalid_argument);
+  }
 }
 
 }  // namespace
