@@ -28,7 +28,10 @@ class Random {
   /// Uniform on the unit sphere.
   Eigen::Vector3d direction() {
     for (;;) {
-      const Eigen::Vector3d point(uniform(-1, 1), uniform(-1, 1), uniform(-1, 1));
+      const double z = uniform(-1, 1);
+      const double y = uniform(-1, 1);
+      const double x = uniform(-1, 1);
+      const Eigen::Vector3d point(x, y, z);
       const double norm = point.norm();
       if (norm > 0.1 && norm <= 1) return point / norm;
     }

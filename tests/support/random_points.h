@@ -12,6 +12,15 @@
 
 namespace vdbmap::test {
 
+/// Three values of next() as a vector, z first: in what order arguments are made each compiler decides for itself, and
+/// another order is another test.
+template <typename Next>
+Eigen::Vector3d vector_of(const Next& next) {
+  Eigen::Vector3d vector;
+  for (int axis = 2; axis >= 0; --axis) vector[axis] = next();
+  return vector;
+}
+
 /// A unit vector, every direction equally likely.
 Eigen::Vector3d random_direction(std::mt19937& random);
 

@@ -5,6 +5,8 @@
 #include <cstring>
 #include <random>
 
+#include "tests/support/random_points.h"
+
 namespace vdbmap::test {
 namespace {
 
@@ -19,7 +21,8 @@ PointCloud sample_cloud() {
   for (const Eigen::Vector3d& place :
        {Eigen::Vector3d(0, 0, 0), Eigen::Vector3d(-30.2, 12.7, -3.1), Eigen::Vector3d(410.0, -399.9, 25.6)}) {
     for (int i = 0; i < 400; ++i) {
-      const Eigen::Vector3d in_cluster(near(random), near(random), 0.2 * near(random));
+      const Eigen::Vector3d in_cluster =
+          vector_of([&] { return near(random); }).cwiseProduct(Eigen::Vector3d(1, 1, 0.2));
       cloud.positions.emplace_back(kAnchor + place + in_cluster);
       const auto channel = [&] { return static_cast<std::uint16_t>(code(random)); };
       cloud.colors.push_back({channel(), channel(), channel()});

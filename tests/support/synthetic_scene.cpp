@@ -87,7 +87,11 @@ Scene village() {
     for (double x = -38; x < 36; x += between(5, 11)) {
       Eigen::Isometry3d parked(Eigen::Translation3d(x, side * between(3.6, 4.6), 0));
       parked.rotate(Eigen::AngleAxisd(between(-0.4, 0.4), Eigen::Vector3d::UnitZ()));
-      for (const Rectangle& r : box({-between(1.8, 2.5), -0.9, 0}, {between(1.8, 2.5), 0.9, between(1.3, 2.2)})) {
+      // One after the other: in what order arguments are made, each compiler decides.
+      const double front = between(1.8, 2.5);
+      const double height = between(1.3, 2.2);
+      const double back = between(1.8, 2.5);
+      for (const Rectangle& r : box({-back, -0.9, 0}, {front, 0.9, height})) {
         scene.push_back({parked * r.corner, parked.linear() * r.edge_a, parked.linear() * r.edge_b});
       }
     }

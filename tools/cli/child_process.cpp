@@ -21,7 +21,8 @@
 namespace vdbmap::cli {
 namespace {
 
-constexpr int kOutOfMemory = 100;  // no exit code of a command
+constexpr int kOutOfMemory = 100;                // no exit code of a command
+constexpr std::uint64_t kSecondsOfWaiting = 60;  // for disks and other programs
 
 #if defined(__SANITIZE_ADDRESS__)
 constexpr bool kHasAddressSanitizer = true;
@@ -36,8 +37,8 @@ constexpr bool kHasAddressSanitizer = false;
 #endif
 
 void limit(__rlimit_resource resource, std::uint64_t value) {
-  const rlimit both{value, value};
-  ::setrlimit(resource, &both);
+  const rlimit soft_and_hard{value, value + 1};  // beyond the hard one, a signal would not tell why
+  ::setrlimit(resource, &soft_and_hard);
 }
 
 // Whether the limit is ours: a lower one that this process has already stays, and is not the file's fault.
@@ -56,6 +57,7 @@ bool limit_memory(std::uint64_t bytes) {
   if (::getppid() != parent) std::_Exit(EXIT_FAILURE);  // it had ended before
   limit(RLIMIT_CORE, 0);
   limit(RLIMIT_CPU, limits.processor_seconds);
+  ::alarm(static_cast<unsigned>(kSecondsOfWaiting + 4 * limits.processor_seconds));  // one that waits uses no processor
   if (limit_memory(limits.memory_bytes)) std::set_new_handler(end_for_lack_of_memory);
   const ExitCode code = report_errors(body);
   std::fflush(nullptr);
@@ -71,9 +73,10 @@ int wait_for(pid_t child) {
 }
 
 std::string text_of_signal(int signal, const ChildLimits& limits) {
-  if (signal == SIGXCPU || signal == SIGKILL) {
-    return "took more than " + std::to_string(limits.processor_seconds) + " s to be read, or was ended from outside";
+  if (signal == SIGXCPU || signal == SIGALRM) {
+    return "took more than " + std::to_string(limits.processor_seconds) + " s to be read";
   }
+  if (signal == SIGKILL) return "took too long to be read, or was ended from outside";
   return "ended the reader by signal " + std::to_string(signal) + " (" + ::strsignal(signal) + ")";
 }
 

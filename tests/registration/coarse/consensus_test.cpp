@@ -27,7 +27,7 @@ SurfacePoints moved(SurfacePoints points, const Eigen::Isometry3d& motion, doubl
   std::mt19937 random(seed);
   std::normal_distribution<double> normal(0, noise);
   for (Eigen::Vector3d& position : points.positions) {
-    position = motion * position + Eigen::Vector3d(normal(random), normal(random), normal(random));
+    position = motion * position + test::vector_of([&] { return normal(random); });
   }
   for (Eigen::Vector3d& direction : points.normals) direction = motion.linear() * direction;
   return points;

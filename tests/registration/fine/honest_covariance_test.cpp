@@ -28,13 +28,14 @@ VoxelMap noisy_map(const NoisyPlace& place, unsigned seed) {
   PointCloud cloud = test::sample_scene(place.scene, place.points_per_square_metre, seed);
   std::mt19937 random(seed);
   std::normal_distribution<double> noise(0, place.map_noise);
-  for (Eigen::Vector3d& point : cloud.positions) point += Eigen::Vector3d(noise(random), noise(random), noise(random));
+  for (Eigen::Vector3d& point : cloud.positions) point += test::vector_of([&] { return noise(random); });
   return build_map(cloud);
 }
 
 Eigen::Isometry3d random_pose(std::mt19937& random) {
   std::uniform_real_distribution<double> unit(-1, 1);
-  const Eigen::Translation3d place(1.5 * unit(random), 0.8 * unit(random), 1.5 + 0.3 * unit(random));
+  const Eigen::Vector3d shares = test::vector_of([&] { return unit(random); });
+  const Eigen::Translation3d place(1.5 * shares.x(), 0.8 * shares.y(), 1.5 + 0.3 * shares.z());
   return place * Eigen::AngleAxisd(3 * unit(random), Eigen::Vector3d(0.02, -0.01, 1).normalized());
 }
 

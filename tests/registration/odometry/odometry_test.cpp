@@ -29,9 +29,11 @@ test::Scene rough_street() {
   std::uniform_real_distribution<double> size(0.2, 0.9);
   test::Scene scene = test::street();
   for (int i = 0; i < 60; ++i) {
-    const Eigen::Vector3d corner(along(random), across(random), 0);
+    const double y = across(random);
+    const double x = along(random);
+    const Eigen::Vector3d corner(x, y, 0);
     if (std::abs(corner.y()) < 2) continue;  // of the lane
-    const Eigen::Vector3d edges(size(random), size(random), 3 * size(random));
+    const Eigen::Vector3d edges = test::vector_of([&] { return size(random); }).cwiseProduct(Eigen::Vector3d(1, 1, 3));
     for (const test::Rectangle& side : test::box(corner, corner + edges)) scene.push_back(side);
   }
   return scene;
