@@ -23,6 +23,7 @@ using Json = nlohmann::json;
 
 constexpr double kDegree = std::numbers::pi / 180;
 constexpr std::size_t kMostBeams = 256;
+constexpr const char* kMapper = "mapper";
 constexpr auto kKeys =
     std::to_array<const char*>({"name", "model", "epoch", "beams", "lowest_deg", "highest_deg", "elevations_deg",
                                 "rate", "firings", "range", "noise", "height", "tilt_deg"});
@@ -44,7 +45,7 @@ class SensorReader {
       fail("wants a name of letters, digits, - and _");
     }
     where_ = "sensor " + vdbmap::quoted(name);
-    SensorUse use{{name, read_lidar()}, std::nullopt};
+    SensorUse use{name == kMapper ? read_mapper() : Sensor{name, read_lidar()}, std::nullopt};
     if (json_.contains("epoch")) use.epoch = static_cast<int>(number("epoch", 0, 0, 1000));
     return use;
   }
@@ -94,6 +95,14 @@ class SensorReader {
     }
     std::ranges::sort(elevations);
     return elevations;
+  }
+
+  // The mobile mapper is as it is.
+  Sensor read_mapper() const {
+    for (const auto& [key, value] : json_.items()) {
+      if (key != "name" && key != "epoch") fail("is the mobile mapper, which has no " + vdbmap::quoted(key));
+    }
+    return sensor_of_name(kMapper);
   }
 
   LidarModel read_lidar() const {
