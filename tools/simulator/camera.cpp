@@ -10,11 +10,12 @@
 namespace vdbmap::simulator {
 namespace {
 
-constexpr double kNoise = 0.02;         // of a camera, as a share of the light
-constexpr double kOffSurface = 0.03;    // [m] where shadow rays begin
-constexpr double kGroundLight = 0.16;   // share of the light that the ground sends up
-constexpr double kExposure = 0.78;      // so that white walls in the sun just saturate
-constexpr double kFarthestShadow = 80;  // [m]
+constexpr double kNoise = 0.02;                 // of a camera, as a share of the light
+constexpr double kOffSurface = 0.03;            // [m] where shadow rays begin
+constexpr double kGroundLight = 0.16;           // share of the light that the ground sends up
+constexpr double kExposure = 0.78;              // so that white walls in the sun just saturate
+constexpr double kFarthestShadow = 80;          // [m]
+constexpr Rgb16 kDrop = {45000, 46000, 48000};  // of rain, which is no surface: grey as the sky behind it
 
 double linear(double srgb) {
   return linear_from_srgb(static_cast<std::uint16_t>(std::lround(std::clamp(srgb, 0.0, 1.0) * 65535))) / 65535.0;
@@ -92,6 +93,7 @@ Daylight make_daylight(std::uint64_t seed, int epoch) {
 
 Rgb16 color_of(const SceneView& view, const Daylight& light, const Eigen::Vector3d& point, const Echo& echo,
                RayRandom& random) {
+  if (echo.triangle == kNoTriangle) return kDrop;
   const Material& material = view.material(echo.triangle);
   double facing = echo.normal.dot(light.to_sun);
   if (material.texture == Texture::kLeaves) facing = 0.35 + 0.3 * std::abs(facing);  // leaves glow from both sides

@@ -26,5 +26,16 @@ TEST(Camera, ShadowsAreDarkerAndBluer) {
   EXPECT_GT(double(dark.b) / dark.r, double(lit.b) / lit.r);
 }
 
+TEST(Camera, DropsOfRainAreGreyThoughTheyAreNoSurface) {
+  SimpleScene scene;
+  const RayCaster caster(scene.mesh);
+  RayRandom random(1);
+  const Echo drop = {5, kNoTriangle, Eigen::Vector3d::UnitX(), 0.03};
+  const Rgb16 color =
+      color_of({scene.mesh, scene.materials, caster}, Daylight{{0, 0, 1}}, Eigen::Vector3d(5, 0, 1), drop, random);
+  EXPECT_NEAR(color.r, color.b, 0.1 * color.b);
+  EXPECT_GT(color.g, 20000);
+}
+
 }  // namespace
 }  // namespace vdbmap::simulator

@@ -41,6 +41,14 @@ TEST(SensorFile, ReadsScannersOfNamedModelsAndOfTheirOwn) {
   EXPECT_NEAR(many.lasers.back().elevation, 15 * EIGEN_PI / 180, 1e-12);
 }
 
+TEST(SensorFile, KnowsTheMobileMapper) {
+  const std::vector<SensorUse> uses = read(R"([{"name": "mapper", "epoch": 2}, {"name": "a", "model": "hdl64"}])");
+  ASSERT_EQ(uses.size(), 2U);
+  EXPECT_TRUE(uses[0].sensor.is_mapper());
+  EXPECT_EQ(uses[0].epoch, 2);
+  EXPECT_FALSE(uses[1].sensor.is_mapper());
+}
+
 TEST(SensorFile, SaysWhichSensorIsWrongAndWhy) {
   const std::pair<const char*, const char*> refused[] = {
       {"", "is no JSON array"},
@@ -58,6 +66,7 @@ TEST(SensorFile, SaysWhichSensorIsWrongAndWhy) {
       {R"([{"name": "a", "elevations_deg": [100]}])", "elevation that is none"},
       {R"([{"name": "a", "elevations_deg": []}])", "wants 1 to 256 elevations"},
       {R"([{"name": "a", "height": 50}])", "\"height\" 50"},
+      {R"([{"name": "mapper", "height": 3}])", "is the mobile mapper, which has no 'height'"},
   };
   for (const auto& [text, part] : refused) {
     try {
