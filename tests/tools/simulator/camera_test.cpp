@@ -28,6 +28,7 @@ TEST(Camera, ShadowsAreDarkerAndBluer) {
 
 TEST(Camera, DropsOfRainAreGreyThoughTheyAreNoSurface) {
   SimpleScene scene;
+  add_quad(scene.brush(0.5F), {-5, -5, 0}, {5, -5, 0}, {5, 5, 0}, {-5, 5, 0});
   const RayCaster caster(scene.mesh);
   RayRandom random(1);
   const Echo drop = {5, kNoTriangle, Eigen::Vector3d::UnitX(), 0.03};
