@@ -194,7 +194,8 @@ class Crops:
         stretches = [size * self.choose.uniform(0.96, 1.04) for _ in range(3)]
         stretches[1] *= self.choose.choice([-1, 1])
         stretch = torch.diag(torch.tensor(stretches, device=self.device))
-        points = points @ (tilt @ rotation(self.choose.uniform(0, 2 * math.pi), self.device) @ stretch).T + self._uniform(3)
+        points = points @ (tilt @ rotation(self.choose.uniform(0, 2 * math.pi), self.device) @ stretch).T
+        points = points + voxels.FINEST * voxels.COARSEST * self._uniform(3)
         return points + self._normal(*points.shape) * self.choose.uniform(0, 0.025) if self._chance(0.6) else points
 
     def _with_strays(self, points, labels):

@@ -7,6 +7,7 @@ import pathlib
 import random
 import shutil
 import subprocess
+import sys
 import tempfile
 
 from . import places
@@ -41,7 +42,8 @@ def scanners(choose):
 
 
 def make_street(command, folder, seed):
-    """Simulates a street and keeps what is learned from: FOLDER/SEED.npz. A street that is there already stays."""
+    """Simulates a street and keeps what is learned from: FOLDER/SEED.npz, or None where that failed, which is said. A
+    street that is there already stays."""
     path = pathlib.Path(folder) / f"{seed}.npz"
     if path.exists():
         return path
@@ -65,18 +67,20 @@ def make_street(command, folder, seed):
         sensor_file.write_text(json.dumps(sensors))
         street = pathlib.Path(work) / "street"
         arguments = [str(value) for option in options.items() for value in option]
-        subprocess.run(
-            [command, "simulate", street, *arguments, "--sensors", sensor_file, "--quiet"],
-            check=True,
-            stdout=subprocess.DEVNULL,
+        done = subprocess.run(
+            [command, "simulate", street, *arguments, "--sensors", sensor_file, "--quiet"], stdout=subprocess.DEVNULL
         )
+        if done.returncode != 0:
+            print(f"no street of seed {seed}: {command} ended with {done.returncode}", file=sys.stderr, flush=True)
+            return None
         places.of_street(street, SURVEY_STEP).save(path)
         shutil.rmtree(street)
     return path
 
 
 def make_streets(command, folder, seeds, workers):
-    """Paths of the streets of all seeds, in their order; `workers` are simulated at once."""
+    """Paths of the streets of all seeds, in their order, without those that failed; `workers` are simulated at once."""
     pathlib.Path(folder).mkdir(parents=True, exist_ok=True)
     with concurrent.futures.ThreadPoolExecutor(workers) as pool:
-        return list(pool.map(lambda seed: make_street(command, folder, seed), seeds))
+        paths = pool.map(lambda seed: make_street(command, folder, seed), seeds)
+        return [path for path in paths if path]

@@ -114,8 +114,12 @@ def prepare(options):
         places.of_sequence(folder).save(own[-1])
     seeds = range(options.first_street, options.first_street + options.streets)
     judged = range(FIRST_VALIDATION_SEED, FIRST_VALIDATION_SEED + options.validation)
-    made = streets.make_streets(options.vdbmap, options.out / "places", [*judged, *seeds], options.workers)
-    return own + made[len(judged) :], made[: len(judged)]
+    folder = options.out / "places"
+    judged = streets.make_streets(options.vdbmap, folder, judged, options.workers)
+    learned = own + streets.make_streets(options.vdbmap, folder, seeds, options.workers)
+    if not learned:
+        raise SystemExit("train.py: there is no place to learn from")
+    return learned, judged
 
 
 def learn(learner, scenes, options):

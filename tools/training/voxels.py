@@ -11,6 +11,7 @@ from . import classes
 
 FINEST = 0.1  # [m]
 NUM_LEVELS = 5  # 0.1, 0.2, 0.4, 0.8, 1.6 m
+COARSEST = 2 ** (NUM_LEVELS - 1)  # [voxels]
 NUM_NEIGHBOURS = 28
 NEIGHBOUR_RADIUS_SQUARED = 6.25  # [voxels^2], between indices
 KERNEL_RADIUS = 1.5  # [voxels]
@@ -66,11 +67,11 @@ def heights(positions):
 
 
 class Voxels:
-    """Of one cloud: cells (n x 3, from 0), means (n x 3) [m], counts, features (n x 4); labels where the points have some."""
+    """Of one cloud: cells (n x 3, none negative), means (n x 3) [m], counts, features (n x 4); labels where the points have some."""
 
     def __init__(self, points, labels=None):
         cells = torch.floor(points / FINEST).long()
-        cells -= cells.min(0).values
+        cells -= cells.min(0).values // COARSEST * COARSEST
         size = cells.max(0).values + 1
         keys, self.of_point, counts = torch.unique(keys_of(cells, size), return_inverse=True, return_counts=True)
         self.cells = cells_of(keys, size)

@@ -1,0 +1,172 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// How well the network tells the classes of a real street apart, on which it was not trained: segmentation_accuracy
+// WEIGHTS FOLDER, where FOLDER holds velodyne/, labels/*.u8 and poses.txt (kitti00 of the real data).
+#include <array>
+#include <chrono>
+#include <cmath>
+#include <cstdio>
+#include <filesystem>
+#include <numbers>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "parking/segmentation/segment.h"
+#include "vdbmap/core/map_builder.h"
+#include "vdbmap/core/voxel_level.h"
+#include "vdbmap/io/file/byte_reader.h"
+#include "vdbmap/io/points/point_reader.h"
+#include "vdbmap/io/poses/trajectory_file.h"
+
+namespace vdbmap::parking {
+namespace {
+
+using Confusion = std::array<std::array<std::size_t, kNumClasses>, kNumClasses>;  // a row a true class
+using Truth = std::vector<std::optional<SurfaceClass>>;
+
+// SemanticKITTI's 19 classes as kitti00/labels numbers them.
+std::optional<SurfaceClass> class_of(std::uint8_t label) {
+  using enum SurfaceClass;
+  constexpr std::array<std::int32_t, 20> kLabels = {0,  10, 11, 15, 18, 20, 30, 31, 32, 40,
+                                                    44, 48, 49, 50, 51, 70, 71, 72, 80, 81};
+  return label < kLabels.size() ? surface_class_of(kLabels[label]) : std::nullopt;
+}
+
+// Points in the frame of all scans.
+struct Scan {
+  PointCloud cloud;
+  Truth truth;
+  std::vector<int> rings;
+};
+
+std::vector<int> rings_of(const PointCloud& cloud) {
+  std::vector<int> rings;
+  double before = 0;
+  int ring = 0;
+  for (const Eigen::Vector3d& point : cloud.positions) {
+    const double angle = std::atan2(point.y(), point.x());
+    const double turn = angle < 0 ? angle + 2 * std::numbers::pi : angle;
+    if (turn < before - std::numbers::pi) ++ring;
+    before = turn;
+    rings.push_back(ring);
+  }
+  return rings;
+}
+
+std::vector<Scan> read_scans(const std::filesystem::path& folder) {
+  const Trajectory poses = read_trajectory(folder / "poses.txt");
+  std::vector<Scan> scans;
+  for (const std::filesystem::path& file : list_point_files({folder / "velodyne"})) {
+    Scan scan{read_points(file).cloud, {}, {}};
+    scan.rings = rings_of(scan.cloud);
+    ByteReader labels(folder / "labels" / file.filename().replace_extension(".u8"));
+    for (Eigen::Vector3d& point : scan.cloud.positions) {
+      point = poses.map_from_scan[scans.size()].value() * point;
+      scan.truth.push_back(class_of(labels.read_le<std::uint8_t>()));
+      labels.skip(1);  // the class carried over from neighbours
+    }
+    scans.push_back(std::move(scan));
+  }
+  return scans;
+}
+
+struct Part {
+  PointCloud cloud;
+  Truth truth;
+
+  void add(const Scan& scan, int ring_step) {
+    for (std::size_t i = 0; i < scan.cloud.size(); ++i) {
+      if (scan.rings[i] % ring_step != 0) continue;
+      cloud.positions.push_back(scan.cloud.positions[i]);
+      truth.push_back(scan.truth[i]);
+    }
+  }
+};
+
+struct Judgement {
+  Confusion confusion{};
+  std::size_t num_voxels = 0;
+  double seconds = 0;
+};
+
+void judge(const Part& part, const NetworkWeights& network, Judgement& judgement) {
+  const auto begin = std::chrono::steady_clock::now();
+  BuildOptions options;
+  options.voxel_sizes = {0.1};
+  const VoxelMap map = build_map(part.cloud, options);
+  const VoxelLevel& level = map.finest();
+  const std::vector<SurfaceClass> classes = segment(level, network);
+  judgement.seconds += std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count();
+  judgement.num_voxels += level.size();
+  const VoxelFinder finder(level);
+  for (std::size_t i = 0; i < part.cloud.size(); ++i) {
+    if (!part.truth[i]) continue;
+    const VoxelRecord* record = finder.find(voxel_of_point(part.cloud.positions[i] - map.frame.anchor, 10.0));
+    const SurfaceClass found = classes[static_cast<std::size_t>(record - level.records().data())];
+    ++judgement.confusion[static_cast<std::size_t>(*part.truth[i])][static_cast<std::size_t>(found)];
+  }
+}
+
+void print(const char* name, const Judgement& judgement) {
+  constexpr auto kVehicle = static_cast<std::size_t>(SurfaceClass::kVehicle);
+  const Confusion& confusion = judgement.confusion;
+  std::array<double, kNumClasses> rows{}, columns{};
+  double all = 0;
+  for (std::size_t i = 0; i < kNumClasses; ++i) {
+    for (std::size_t j = 0; j < kNumClasses; ++j) {
+      const auto count = static_cast<double>(confusion[i][j]);
+      rows[i] += count, columns[j] += count, all += count;
+    }
+  }
+  std::printf("\n%s: %zu voxels in %.1f s\n%-11s", name, judgement.num_voxels, judgement.seconds, "IoU");
+  for (std::size_t i = 0; i < kNumClasses; ++i) {
+    const auto hits = static_cast<double>(confusion[i][i]);
+    std::printf(" %10.3f", hits / (rows[i] + columns[i] - hits));
+  }
+  const auto hits = static_cast<double>(confusion[kVehicle][kVehicle]);
+  std::printf("\nvehicles: precision %.3f, recall %.3f, called so %.2f %% of all other points\n%-11s",
+              hits / columns[kVehicle], hits / rows[kVehicle],
+              100 * (columns[kVehicle] - hits) / (all - rows[kVehicle]), "true");
+  for (std::size_t i = 0; i < kNumClasses; ++i) std::printf(" %10s", name_of(static_cast<SurfaceClass>(i)).data());
+  for (std::size_t i = 0; i < kNumClasses; ++i) {
+    std::printf("\n%-11s", name_of(static_cast<SurfaceClass>(i)).data());
+    for (std::size_t j = 0; j < kNumClasses; ++j) std::printf(" %10zu", confusion[i][j]);
+  }
+  std::printf("\n");
+}
+
+int run(const std::filesystem::path& weights, const std::filesystem::path& folder) {
+  const NetworkWeights network = read_network(weights);
+  const std::vector<Scan> scans = read_scans(folder);
+  Part together;
+  for (const Scan& scan : scans) together.add(scan, 1);
+  Judgement all;
+  judge(together, network, all);
+  print("all scans together", all);
+  for (const int ring_step : {1, 4}) {
+    Judgement single;
+    for (const Scan& scan : scans) {
+      Part part;
+      part.add(scan, ring_step);
+      judge(part, network, single);
+    }
+    print(ring_step == 1 ? "single scans" : "single scans, every fourth ring", single);
+  }
+  return 0;
+}
+
+}  // namespace
+}  // namespace vdbmap::parking
+
+int main(int argc, char** argv) {
+  if (argc != 3) {
+    std::fprintf(stderr, "usage: segmentation_accuracy WEIGHTS FOLDER\n");
+    return 2;
+  }
+  try {
+    return vdbmap::parking::run(argv[1], argv[2]);
+  } catch (const std::exception& error) {
+    std::fprintf(stderr, "%s\n", error.what());
+    return 1;
+  }
+}
