@@ -64,6 +64,12 @@ BuildOptions anchored(const Eigen::Vector3d& anchor) {
 
 bool same_voxels(const VoxelLevel& a, const VoxelLevel& b) { return std::ranges::equal(a.leaves(), b.leaves()); }
 
+VoxelMap fine_map_of(const PointCloud& cloud) {
+  BuildOptions options = anchored(Eigen::Vector3d::Zero());
+  options.voxel_sizes = {0.1};
+  return build_map(cloud, options);
+}
+
 VoxelMap map_of_voxels(const std::vector<VoxelIndex>& voxels) {
   PointCloud cloud;
   for (const VoxelIndex& voxel : voxels) cloud.positions.push_back(center_of_voxel(voxel, 0.1));

@@ -24,6 +24,9 @@ inline const Eigen::Vector3d kUtm(548'864, 5'804'032, 0);
 /// The usual options with an anchor.
 BuildOptions anchored(const Eigen::Vector3d& anchor);
 
+/// The level of 10 cm alone, anchored at (0, 0, 0).
+VoxelMap fine_map_of(const PointCloud& cloud);
+
 /// One point in the middle of each voxel of 10 cm, anchored at the origin.
 VoxelMap map_of_voxels(const std::vector<VoxelIndex>& voxels);
 
