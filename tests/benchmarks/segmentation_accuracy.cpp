@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// How well the network tells the classes of a real street apart, on which it was not trained: segmentation_accuracy
-// WEIGHTS FOLDER, where FOLDER holds velodyne/, labels/*.u8 and poses.txt (kitti00 of the real data).
+// How well the network tells classes apart on what it was not trained on: segmentation_accuracy WEIGHTS FOLDER..., each
+// a street of `vdbmap simulate` (its survey and the VLP-16 scans of its second epoch), or a real drive with velodyne/,
+// labels/*.u8 and poses.txt (kitti00 of the real data).
 #include <array>
 #include <chrono>
 #include <cmath>
@@ -15,6 +16,7 @@
 #include "vdbmap/core/map_builder.h"
 #include "vdbmap/core/voxel_level.h"
 #include "vdbmap/io/file/byte_reader.h"
+#include "vdbmap/io/kitti/label_file.h"
 #include "vdbmap/io/points/point_reader.h"
 #include "vdbmap/io/poses/trajectory_file.h"
 
@@ -119,12 +121,15 @@ void print(const char* name, const Judgement& judgement) {
     }
   }
   std::printf("\n%s: %zu voxels in %.1f s\n%-11s", name, judgement.num_voxels, judgement.seconds, "IoU");
+  double mean = 0;
   for (std::size_t i = 0; i < kNumClasses; ++i) {
-    const auto hits = static_cast<double>(confusion[i][i]);
-    std::printf(" %10.3f", hits / (rows[i] + columns[i] - hits));
+    const auto hits_of_class = static_cast<double>(confusion[i][i]);
+    const double iou = hits_of_class / (rows[i] + columns[i] - hits_of_class);
+    mean += iou / kNumClasses;
+    std::printf(" %10.3f", iou);
   }
   const auto hits = static_cast<double>(confusion[kVehicle][kVehicle]);
-  std::printf("\nvehicles: precision %.3f, recall %.3f, called so %.2f %% of all other points\n%-11s",
+  std::printf("   mean %.3f\nvehicles: precision %.3f, recall %.3f, called so %.2f %% of all other points\n%-11s", mean,
               hits / columns[kVehicle], hits / rows[kVehicle],
               100 * (columns[kVehicle] - hits) / (all - rows[kVehicle]), "true");
   for (std::size_t i = 0; i < kNumClasses; ++i) std::printf(" %10s", name_of(static_cast<SurfaceClass>(i)).data());
@@ -135,8 +140,7 @@ void print(const char* name, const Judgement& judgement) {
   std::printf("\n");
 }
 
-int run(const std::filesystem::path& weights, const std::filesystem::path& folder) {
-  const NetworkWeights network = read_network(weights);
+void judge_drive(const NetworkWeights& network, const std::filesystem::path& folder) {
   const std::vector<Scan> scans = read_scans(folder);
   Part together;
   for (const Scan& scan : scans) together.add(scan, 1);
@@ -152,6 +156,45 @@ int run(const std::filesystem::path& weights, const std::filesystem::path& folde
     }
     print(ring_step == 1 ? "single scans" : "single scans, every fourth ring", single);
   }
+}
+
+void judge_file(const NetworkWeights& network, const std::filesystem::path& points, const std::filesystem::path& labels,
+                Judgement& judgement) {
+  ReadResult read = read_points(points);
+  attach_labels(read, labels);
+  Part part;
+  part.cloud = std::move(read.cloud);
+  for (const std::int32_t label : part.cloud.labels) part.truth.push_back(surface_class_of(label));
+  judge(part, network, judgement);
+}
+
+struct StreetJudgement {
+  Judgement surveys;
+  Judgement scans;
+};
+
+void judge_street(const NetworkWeights& network, const std::filesystem::path& folder, StreetJudgement& judgement) {
+  judge_file(network, folder / "epoch0" / "cloud.las", folder / "epoch0" / "labels" / "cloud.label", judgement.surveys);
+  for (const std::filesystem::path& scan : list_point_files({folder / "epoch1" / "scans"})) {
+    const auto label = scan.filename().replace_extension(".label");
+    judge_file(network, scan, folder / "epoch1" / "labels" / "scans" / label, judgement.scans);
+  }
+}
+
+int run(const std::filesystem::path& weights, const std::vector<std::filesystem::path>& folders) {
+  const NetworkWeights network = read_network(weights);
+  StreetJudgement streets;
+  for (const std::filesystem::path& folder : folders) {
+    if (std::filesystem::exists(folder / "street.json")) {
+      judge_street(network, folder, streets);
+    } else {
+      judge_drive(network, folder);
+    }
+  }
+  if (streets.surveys.num_voxels > 0) {
+    print("surveys", streets.surveys);
+    print("VLP-16 scans", streets.scans);
+  }
   return 0;
 }
 
@@ -159,12 +202,12 @@ int run(const std::filesystem::path& weights, const std::filesystem::path& folde
 }  // namespace vdbmap::parking
 
 int main(int argc, char** argv) {
-  if (argc != 3) {
-    std::fprintf(stderr, "usage: segmentation_accuracy WEIGHTS FOLDER\n");
+  if (argc < 3) {
+    std::fprintf(stderr, "usage: segmentation_accuracy WEIGHTS FOLDER...\n");
     return 2;
   }
   try {
-    return vdbmap::parking::run(argv[1], argv[2]);
+    return vdbmap::parking::run(argv[1], {argv + 2, argv + argc});
   } catch (const std::exception& error) {
     std::fprintf(stderr, "%s\n", error.what());
     return 1;

@@ -30,11 +30,16 @@ const OutputKind kMapKind = {"an OpenVDB file", {".vdb"}};
 const OutputKind kPictureKind = {"a PNG or JPEG picture", {".png", ".jpg", ".jpeg"}};
 const OutputKind kPosesKind = {"poses as text", {".txt"}};
 const OutputKind kPointsKind = {"points", {".ply", ".las", ".xyz"}};
+const OutputKind kLabelsKind = {"SemanticKITTI's labels", {".label"}};
 const OutputKind kJsonKind = {"JSON", {".json", ".txt"}};
+
+bool has_ending(const std::filesystem::path& output, const OutputKind& kind) {
+  return std::ranges::count(kind.endings, ending_of(output)) > 0;
+}
 
 void check_ending(const std::filesystem::path& output, const OutputKind& kind) {
   const std::string ending = ending_of(output);
-  if (std::ranges::count(kind.endings, ending) > 0 || std::ranges::count(kKnownEndings, ending) == 0) return;
+  if (has_ending(output, kind) || std::ranges::count(kKnownEndings, ending) == 0) return;
   throw std::invalid_argument(output.string() + ": is written as " + kind.name + ", but '" + ending +
                               "' stands for another format: choose a name with " + kind.endings.front());
 }

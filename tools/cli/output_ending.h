@@ -17,7 +17,11 @@ extern const OutputKind kMapKind;      ///< maps and channels
 extern const OutputKind kPictureKind;  ///< pictures and plots
 extern const OutputKind kPosesKind;    ///< KITTI and TUM trajectories
 extern const OutputKind kPointsKind;   ///< points
+extern const OutputKind kLabelsKind;   ///< classes of points
 extern const OutputKind kJsonKind;     ///< reports
+
+/// Whether a name has one of the endings of a kind, in upper or lower case.
+bool has_ending(const std::filesystem::path& output, const OutputKind& kind);
 
 /// Throws std::invalid_argument where the ending of a name, in upper or lower case, is one that stands for another
 /// format than the one written. A name without ending, or with one that stands for no format, is as good as any.

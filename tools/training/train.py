@@ -54,6 +54,11 @@ class Average:
                     self.state[name].lerp_(value, share)
 
 
+def state_of(path, device):
+    """Of a former training's state.pt, or of finished weights: their norms are folded, which learns on as well."""
+    return weights.read(path)[0].state_dict() if path.suffix == ".kpconv" else torch.load(path, map_location=device)
+
+
 class Learner:
     def __init__(self, options, device):
         self.options, self.device = options, device
@@ -61,8 +66,7 @@ class Learner:
         widths, blocks = network.LARGE if options.size == "large" else network.SMALL
         self.net = network.Network(widths, blocks).to(device)
         if options.resume:
-            saved = torch.load(options.resume, map_location=device)
-            self.net.load_state_dict(saved)
+            self.net.load_state_dict(state_of(options.resume, device))
         matrices = [p for p in self.net.parameters() if p.ndim > 1]
         others = [p for p in self.net.parameters() if p.ndim <= 1]
         groups = [{"params": matrices, "weight_decay": 0.02}, {"params": others, "weight_decay": 0}]
@@ -194,16 +198,16 @@ def parse(arguments):
     parser = argparse.ArgumentParser(description=__doc__)
     parser.add_argument("out", type=pathlib.Path, help="folder to write; places made before are used again")
     parser.add_argument("--vdbmap", default="build/release/bin/vdbmap", help="the command that simulates (default: %(default)s)")
-    parser.add_argument("--streets", type=int, default=120, help="simulated streets to learn from (default: %(default)s)")
+    parser.add_argument("--streets", type=int, default=128, help="simulated streets to learn from (default: %(default)s)")
     parser.add_argument("--first-street", type=int, default=streets.FIRST_SEED, help="seed of the first (default: %(default)s)")
     parser.add_argument("--validation", type=int, default=4, help="streets to judge by (default: %(default)s)")
     parser.add_argument("--own", nargs="*", default=[], help="folders of labelled scans, laid out like SemanticKITTI's")
     parser.add_argument("--size", choices=("large", "small"), default="large")
-    parser.add_argument("--voxels", type=float, default=1000, help="to learn from, in millions (default: %(default)s)")
+    parser.add_argument("--voxels", type=float, default=1354, help="to learn from, in millions (default: %(default)s)")
     parser.add_argument("--minutes", type=float, default=math.inf, help="ends the training sooner (default: no limit)")
     parser.add_argument("--batch", type=int, default=200_000, help="voxels a step (default: %(default)s)")
     parser.add_argument("--rate", type=float, default=3e-3, help="highest learning rate (default: %(default)s)")
-    parser.add_argument("--resume", type=pathlib.Path, help="state.pt of a network of this size to begin with")
+    parser.add_argument("--resume", type=pathlib.Path, help="state.pt or .kpconv of a network of this size to begin with")
     parser.add_argument("--seed", type=int, default=1)
     parser.add_argument("--workers", type=int, default=os.cpu_count(), help="streets simulated at once (default: one a core)")
     parser.add_argument("--loaders", type=int, help="processes that make batches (default: two less than cores, 0 without GPU)")

@@ -145,6 +145,12 @@ VoxelMap cut_tile(const VoxelMap& map, const TileId& tile) {
   return part;
 }
 
+VoxelLevel cut_leaves(const VoxelLevel& level, const openvdb::CoordBBox& box) {
+  std::vector<LeafSource> sources;
+  list_leaves(level, [&](const VoxelLeaf& leaf) { return box.isInside(leaf.origin()); }, sources);
+  return level_of(std::move(sources), level);
+}
+
 VoxelMap splice(std::span<const VoxelMap> maps) {
   if (maps.empty()) throw std::invalid_argument("no maps to splice");
   for (const VoxelMap& map : maps.subspan(1)) check_alike(maps.front(), map);

@@ -16,6 +16,9 @@ std::vector<TileId> tiles_of(const VoxelMap& map);
 /// border.
 VoxelMap cut_tile(const VoxelMap& map, const TileId& tile);
 
+/// The leaves of a level whose lowest voxels lie in a box, with their records as they are.
+VoxelLevel cut_leaves(const VoxelLevel& level, const openvdb::CoordBBox& box);
+
 /// One map of several that have no leaf in common, like those that cut_tile() makes of one: leaves and records are
 /// copied, nothing is computed, so the tiles of a map give that map again, bit for bit, in whatever order they come.
 ///

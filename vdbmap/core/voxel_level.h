@@ -53,6 +53,7 @@ class VoxelLevel {
   std::span<const VoxelRecord> records() const { return records_; }
   std::span<VoxelRecord> records() { return records_; }
   const VoxelChannels& channels() const { return channels_; }
+  VoxelChannels& channels() { return channels_; }  ///< each stays empty or gets one value a record
 
   /// All leaves in tree order, which is the order of the records.
   std::span<const VoxelLeaf> leaves() const { return tree_->leaves(); }
