@@ -12,7 +12,9 @@
 
 #include "tests/support/sample_maps.h"
 #include "tests/support/threads.h"
+#include "vdbmap/core/hierarchy.h"
 #include "vdbmap/core/map_builder.h"
+#include "vdbmap/core/normals.h"
 
 namespace vdbmap {
 namespace {
@@ -85,6 +87,45 @@ TEST(MapTiles, HoldTheVoxelsOfTheirColumnAsTheyAre) {
     });
     EXPECT_GT(count, 0U);
     EXPECT_EQ(part.levels[i].size(), count);
+  }
+}
+
+TEST(MapTiles, AreCutOneByOneAsAllAtOnce) {
+  const VoxelMap& map = street_of_tiles();
+  std::vector<TileId> tiles;
+  for_each_tile(map, [&](const TileId& tile, const VoxelMap& part) {
+    tiles.push_back(tile);
+    EXPECT_EQ(test::difference(part, cut_tile(map, tile)), "");
+  });
+  EXPECT_EQ(tiles, tiles_of(map));
+}
+
+TEST(MapTiles, AMarginTakesTheLeavesThatReachIntoIt) {
+  const VoxelMap& map = street_of_tiles();
+  const TileId tile{-1, 0};
+  const VoxelMap part = cut_tile(map, tile, 1.0);
+  std::size_t count = 0;  // of 10 cm: 1 m are begun in the second leaf of 0.8 m, which is taken whole
+  for_each_voxel(map.finest(), [&](const VoxelIndex& voxel, std::size_t) {
+    count += voxel.x() >= -640 - 16 && voxel.x() < 16 && voxel.y() >= -16 && voxel.y() < 640 + 16 ? 1 : 0;
+  });
+  EXPECT_GT(count, cut_tile(map, tile).finest().size());
+  EXPECT_EQ(part.finest().size(), count);
+}
+
+// What the margin is for: a tile is made of its own voxels and those of the margin alone.
+TEST(MapTiles, ATileWithItsMarginHasTheNormalsAndLevelsOfTheWholeMap) {
+  const VoxelMap& map = street_of_tiles();
+  const std::vector<double> voxel_sizes = {0.1, 1, 8};
+  for (const TileId& tile : tiles_of(map)) {
+    VoxelMap part = cut_tile(map, tile, neighbor_margin(voxel_sizes));
+    for (VoxelRecord& record : part.levels.front().records()) {
+      record.normal_code = 0;
+      record.planarity_code = 0;
+    }
+    part.levels.erase(part.levels.begin() + 1, part.levels.end());
+    compute_normals(part.levels.front());
+    add_coarser_levels(part, voxel_sizes);
+    EXPECT_EQ(test::difference(cut_tile(part, tile), cut_tile(map, tile)), "");
   }
 }
 
