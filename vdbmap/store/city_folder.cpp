@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "vdbmap/store/city_folder.h"
 
+#include <algorithm>
+#include <cerrno>
 #include <charconv>
 #include <string_view>
 #include <system_error>
@@ -55,10 +57,6 @@ CityManifest read_latest(const std::filesystem::path& folder) {
   return read_manifest(manifest_path(folder));
 }
 
-std::filesystem::path epoch_path(const std::filesystem::path& folder, std::int32_t epoch) {
-  return epochs_path(folder) / (std::to_string(epoch) + ".json");
-}
-
 CityManifest read_epoch(const std::filesystem::path& folder, std::int32_t epoch) {
   CityManifest latest = read_latest(folder);
   if (latest.epoch == epoch) return latest;
@@ -77,6 +75,9 @@ CityManifest read_manifest_of(const City& city) {
 
 std::filesystem::path manifest_path(const std::filesystem::path& folder) { return folder / "map.json"; }
 std::filesystem::path epochs_path(const std::filesystem::path& folder) { return folder / "epochs"; }
+std::filesystem::path epoch_path(const std::filesystem::path& folder, std::int32_t epoch) {
+  return epochs_path(folder) / (std::to_string(epoch) + ".json");
+}
 std::filesystem::path tiles_path(const std::filesystem::path& folder) { return folder / "tiles"; }
 
 std::filesystem::path tile_path(const std::filesystem::path& folder, const CityTile& tile) {
@@ -107,17 +108,24 @@ bool reopen(City& city) {
   return is_other;
 }
 
-std::map<std::int32_t, CityManifest> read_epochs(const std::filesystem::path& folder) {
-  std::map<std::int32_t, CityManifest> epochs;
+std::vector<std::int32_t> list_epochs(const std::filesystem::path& folder) {
+  std::vector<std::int32_t> epochs;
   std::error_code error;
   for (std::filesystem::directory_iterator entry(epochs_path(folder), error), end; !error && entry != end;
        entry.increment(error)) {
     const std::optional<std::int32_t> epoch = parse_epoch(entry->path().stem().native());
-    if (entry->path().extension() == ".json" && epoch) epochs[*epoch] = read_manifest(entry->path());
+    if (entry->path().extension() == ".json" && epoch) epochs.push_back(*epoch);
   }
   if (error && error != std::errc::no_such_file_or_directory) {
     throw IoError::system(epochs_path(folder), "cannot list", error.value());
   }
+  std::ranges::sort(epochs);
+  return epochs;
+}
+
+std::map<std::int32_t, CityManifest> read_epochs(const std::filesystem::path& folder) {
+  std::map<std::int32_t, CityManifest> epochs;
+  for (const std::int32_t epoch : list_epochs(folder)) epochs[epoch] = read_manifest(epoch_path(folder, epoch));
   if (is_there(manifest_path(folder))) {
     CityManifest latest = read_latest(folder);
     epochs[latest.epoch] = std::move(latest);

@@ -6,6 +6,7 @@
 #include <map>
 #include <optional>
 #include <string>
+#include <vector>
 
 #include "vdbmap/store/city_manifest.h"
 
@@ -26,6 +27,7 @@ struct City {
 
 std::filesystem::path manifest_path(const std::filesystem::path& folder);
 std::filesystem::path epochs_path(const std::filesystem::path& folder);
+std::filesystem::path epoch_path(const std::filesystem::path& folder, std::int32_t epoch);
 std::filesystem::path tiles_path(const std::filesystem::path& folder);
 std::filesystem::path tile_path(const std::filesystem::path& folder, const CityTile& tile);
 
@@ -41,6 +43,9 @@ City open_city(const std::filesystem::path& path);
 
 /// Reads the manifest again; says whether it is another than before.
 bool reopen(City& city);
+
+/// The earlier epochs that a city keeps, rising. Throws IoError (system).
+std::vector<std::int32_t> list_epochs(const std::filesystem::path& folder);
 
 /// The manifests that a city keeps, by their epoch, the latest last. Throws IoError.
 std::map<std::int32_t, CityManifest> read_epochs(const std::filesystem::path& folder);

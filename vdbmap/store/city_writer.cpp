@@ -83,12 +83,10 @@ std::set<std::string> named_tiles(const Path& folder) {
   return names;
 }
 
-std::string epoch_name(std::int32_t epoch) { return std::to_string(epoch) + ".json"; }
-
 // Keeps a manifest as that of its epoch.
 void keep_manifest(const Path& folder, const CityManifest& manifest) {
   create_folder(epochs_path(folder));
-  write_file(epochs_path(folder) / epoch_name(manifest.epoch), text_of(manifest));
+  write_file(epoch_path(folder, manifest.epoch), text_of(manifest));
   sync_folder(epochs_path(folder));
 }
 
@@ -139,7 +137,7 @@ void CityWriter::publish(const CityManifest& manifest, std::size_t keep_epochs) 
   std::vector<std::int32_t> epochs;
   for (const auto& [epoch, kept] : read_epochs(folder_)) epochs.push_back(epoch);
   for (std::size_t i = 0; i + std::max<std::size_t>(keep_epochs, 1) < epochs.size(); ++i) {
-    remove_with_content(epochs_path(folder_) / epoch_name(epochs[i]));
+    remove_with_content(epoch_path(folder_, epochs[i]));
   }
   num_epochs_ = std::min(epochs.size(), std::max<std::size_t>(keep_epochs, 1));
   current_ = City{folder_, std::nullopt, manifest};
