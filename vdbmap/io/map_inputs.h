@@ -4,6 +4,7 @@
 #include <cstddef>
 #include <filesystem>
 #include <functional>
+#include <limits>
 #include <optional>
 #include <vector>
 
@@ -29,11 +30,12 @@ Eigen::Isometry3d pose_of(const MapInput& input);
 
 /// How inputs of a map are read.
 struct InputOptions {
-  std::optional<LabelScheme> label_scheme;     ///< whose numbers labels are, instead of what the files' formats say
-  ReadOptions read;                            ///< `is_in_sensor_frame` as the inputs have poses
-  std::optional<RangeLimits> range;            ///< of the points of inputs with poses, from their sensor
-  bool reads_ahead = true;                     ///< a thread of its own reads the next scan while one is folded
-  std::function<void()> on_scan_done = [] {};  ///< called after each scan
+  std::optional<LabelScheme> label_scheme;  ///< whose numbers labels are, instead of what the files' formats say
+  ReadOptions read;                         ///< `is_in_sensor_frame` as the inputs have poses
+  std::optional<RangeLimits> range;         ///< of the points of inputs with poses, from their sensor
+  bool reads_ahead = true;                  ///< a thread of its own reads what comes next while points are taken
+  std::size_t most_points = std::numeric_limits<std::size_t>::max();  ///< of a piece of a large LAS file
+  std::function<void()> on_scan_done = [] {};                         ///< called after each scan
 };
 
 /// A file whose coordinates are not in metres.
@@ -53,12 +55,19 @@ struct InputNotes {
   LabelScheme label_scheme = LabelScheme::kUnknown;  ///< of the labels; unknown where one file does not say
 };
 
-/// Takes the points of an input, number `index`, and says which of them are not reached.
-using TakePoints = std::function<UnreachablePoints(std::size_t index, const PointCloud& cloud)>;
+/// Points of an input, number `index`: all of them, or a piece of a large file.
+struct InputPoints {
+  std::size_t index = 0;
+  const PointCloud& cloud;
+  bool is_whole = true;
+};
 
-/// Reads inputs one after the other; at most two scans are in memory at once. Throws IoError naming the scan that
-/// cannot be read, of whose points half or more are not reached, or that has another EPSG code or label scheme than one
-/// before; and std::invalid_argument for no inputs and a range that leaves no point.
+/// Takes points and says which of them are not reached.
+using TakePoints = std::function<UnreachablePoints(const InputPoints& points)>;
+
+/// Reads inputs one after the other; at most two scans, or pieces of files, are in memory at once. Throws IoError
+/// naming the scan that cannot be read, of whose points half or more are not reached, or that has another EPSG code or
+/// label scheme than one before; and std::invalid_argument for no inputs and a range that leaves no point.
 InputNotes read_inputs(const std::vector<MapInput>& inputs, const InputOptions& options, const TakePoints& take);
 
 }  // namespace vdbmap

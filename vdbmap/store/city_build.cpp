@@ -91,20 +91,49 @@ UnreachablePoints add_cloud(TileSums& sums, const PointCloud& cloud, const Eigen
   return unreachable;
 }
 
+// The anchor that all points of an input decide, read in pieces: anchor_for() of them together.
+Eigen::Vector3d anchor_of_large(const MapInput& input, const InputOptions& options, double per_metre) {
+  const Eigen::Isometry3d pose = pose_of(input);
+  InputOptions quiet = options;
+  quiet.on_scan_done = [] {};
+  std::optional<Eigen::Vector3d> near_first;
+  std::size_t num_reached = 0;
+  std::size_t num_points = 0;
+  read_inputs({input}, quiet, [&](const InputPoints& points) {
+    if (!near_first) near_first = choose_anchor(pose * points.cloud.positions.front());
+    num_points += points.cloud.size();
+    num_reached += count_reached(*near_first, points.cloud, pose, per_metre);
+    return UnreachablePoints();
+  });
+  if (is_anchor(*near_first) && 2 * num_reached > num_points) return *near_first;
+  quiet.most_points = std::numeric_limits<std::size_t>::max();
+  Eigen::Vector3d anchor;
+  read_inputs({input}, quiet, [&](const InputPoints& points) {
+    anchor = anchor_for(points.cloud, pose, per_metre);
+    return UnreachablePoints();
+  });
+  return anchor;
+}
+
 CountedPoints count_points(TileSums& sums, NewSources& counted, const CityBuildOptions& options) {
-  std::optional<Eigen::Vector3d> anchor = options.files.build.anchor;
   const double per_metre = voxels_per_metre(options.files.build.voxel_sizes.front());
-  const std::size_t at_once = points_at_once(options.memory_bytes);
+  InputOptions inputs = options.files.inputs;
+  inputs.most_points = points_at_once(options.memory_bytes);
   options.on_reading_begun(counted.inputs.size());
+  std::optional<Eigen::Vector3d> anchor = options.files.build.anchor;
   CountedPoints points;
-  points.notes = read_inputs(counted.inputs, options.files.inputs, [&](std::size_t i, const PointCloud& cloud) {
-    if (cloud.empty()) return UnreachablePoints();
-    Eigen::Isometry3d local_from_cloud = pose_of(counted.inputs[i]);
-    if (!anchor) anchor = anchor_for(cloud, local_from_cloud, per_metre);
+  points.notes = read_inputs(counted.inputs, inputs, [&](const InputPoints& read) {
+    if (read.cloud.empty()) return UnreachablePoints();
+    const MapInput& input = counted.inputs[read.index];
+    Eigen::Isometry3d local_from_cloud = pose_of(input);
+    if (!anchor) {
+      anchor = read.is_whole ? anchor_for(read.cloud, local_from_cloud, per_metre)
+                             : anchor_of_large(input, inputs, per_metre);
+    }
     local_from_cloud.translation() -= *anchor;
-    points.kinds.add(cloud);
-    const UnreachablePoints unreachable = add_cloud(sums, cloud, local_from_cloud, per_metre, at_once);
-    counted.sources[i].num_points += cloud.size() - unreachable.count;
+    points.kinds.add(read.cloud);
+    const UnreachablePoints unreachable = add_cloud(sums, read.cloud, local_from_cloud, per_metre, inputs.most_points);
+    counted.sources[read.index].num_points += read.cloud.size() - unreachable.count;
     return unreachable;
   });
   points.anchor = *anchor;

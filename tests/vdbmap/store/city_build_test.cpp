@@ -102,6 +102,28 @@ TEST_F(CityBuild, MemoryThreadsAndOrderChangeNoByte) {
   }
 }
 
+TEST_F(CityBuild, ALargeFileIsReadInPieces) {
+  Eigen::Isometry3d pose = Eigen::Isometry3d::Identity();
+  pose.translation() = Eigen::Vector3d(5e5, 5e6, 5);
+  PointCloud cloud = with_attributes(test::moved(test::sample_scene(test::street(), 60, 1), pose));
+  for (std::uint16_t& label : cloud.labels) label %= 3;
+  ASSERT_GT(cloud.size(), 2U * 16'384);
+  write_las(folder_ / "large.las", cloud, {.epsg = 25832});
+  const MapInput large{{folder_ / "large.las", {}}};
+  CityBuildOptions little = options();
+  little.memory_bytes = 1 << 20;
+  const CityBuilt built = build_city(city(), {large}, little);
+  expect_tiles_of(build_map_from_files({large}).map);
+  EXPECT_EQ(built.added[0].num_points, cloud.size());
+
+  // The first point lies astray: what anchors the map is told by all pieces together.
+  cloud.positions.front() = Eigen::Vector3d(0, 0, 1);
+  write_las(folder_ / "stray.las", cloud, {.resolution = 0.01});
+  const MapInput stray{{folder_ / "stray.las", {}}};
+  build_city(folder_ / "stray", {stray}, little);
+  EXPECT_EQ(test::difference(load_map_or_city(folder_ / "stray"), build_map_from_files({stray}).map), "");
+}
+
 TEST_F(CityBuild, OtherLevelsHaveTheirTilesToo) {
   const std::vector<MapInput> inputs = three_files();
   CityBuildOptions coarse = options();
