@@ -11,6 +11,7 @@ Command check_command();
 Command export_command();
 Command import_command();
 Command merge_command();
+Command log_command();
 Command odometry_command();
 Command localize_command();
 Command evaluate_command();
@@ -20,9 +21,9 @@ Command simulate_command();
 
 std::vector<Command> all_commands() {
   return {
-      build_command(),  info_command(),    query_command(),    check_command(),    export_command(),
-      import_command(), merge_command(),   odometry_command(), localize_command(), evaluate_command(),
-      render_command(), segment_command(), simulate_command(),
+      build_command(),    info_command(),   query_command(),   check_command(),    export_command(),
+      import_command(),   merge_command(),  log_command(),     odometry_command(), localize_command(),
+      evaluate_command(), render_command(), segment_command(), simulate_command(),
   };
 }
 

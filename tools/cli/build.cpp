@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
+#include <algorithm>
 #include <chrono>
 #include <cstdint>
 #include <filesystem>
@@ -13,7 +14,10 @@
 #include <spdlog/fmt/fmt.h>
 #include <spdlog/spdlog.h>
 
+#include "tools/cli/build_city.h"
 #include "tools/cli/build_inputs.h"
+#include "tools/cli/city_output.h"
+#include "tools/cli/city_summary.h"
 #include "tools/cli/command.h"
 #include "tools/cli/map_output.h"
 #include "tools/cli/map_summary.h"
@@ -26,6 +30,7 @@
 #include "vdbmap/io/las/geodetic_codes.h"
 #include "vdbmap/io/map_from_files.h"
 #include "vdbmap/io/points/point_reader.h"
+#include "vdbmap/store/city_folder.h"
 
 namespace vdbmap::cli {
 namespace {
@@ -49,6 +54,9 @@ struct BuildCommandOptions {
   std::optional<double> max_range;  // [m]
   ReadOptions read;
   MapOutput output;
+  CityOutput city;
+
+  bool makes_city() const { return city.into || is_city_output(output.file); }
 };
 
 void add_map_options(CLI::App& app, BuildCommandOptions& options) {
@@ -110,7 +118,10 @@ void add_options(CLI::App& app, BuildCommandOptions& options) {
   add_map_options(app, options);
   add_label_options(app, options);
   add_read_options(app, options.read);
-  add_map_output(app, options.output);
+  add_map_output(app, options.output, /*may_be_city=*/true);
+  CLI::Option* output = app.get_option("--output");
+  output->required(false);
+  add_city_output(app, options.city, output);
 }
 
 // With a voxel size alone: a level ten times as large beside it, unless it does not divide 8 m.
@@ -159,16 +170,20 @@ std::optional<RangeLimits> range_of(const BuildCommandOptions& options) {
   throw std::invalid_argument(fmt::format("--min-range is {} but --max-range {}", range.min, range.max));
 }
 
-MapFromFiles build(const std::vector<MapInput>& inputs, const BuildOptions& build_options,
-                   const BuildCommandOptions& command, const CommonOptions& common) {
-  Progress progress("building from scans", inputs.size(), common);
+MapFromFilesOptions files_options(const BuildOptions& build_options, const BuildCommandOptions& command,
+                                  const CommonOptions& common) {
   MapFromFilesOptions options;
   options.build = build_options;
-  options.label_scheme = label_scheme_of(command.label_scheme);
-  options.read = command.read;
-  options.range = range_of(command);
-  options.reads_ahead = common.num_threads != 1;
-  options.on_scan_done = [&progress] { progress.advance(); };
+  options.inputs.label_scheme = label_scheme_of(command.label_scheme);
+  options.inputs.read = command.read;
+  options.inputs.range = range_of(command);
+  options.inputs.reads_ahead = common.num_threads != 1;
+  return options;
+}
+
+MapFromFiles build(const std::vector<MapInput>& inputs, MapFromFilesOptions options, const CommonOptions& common) {
+  Progress progress("building from scans", inputs.size(), common);
+  options.inputs.on_scan_done = [&progress] { progress.advance(); };
   return build_map_from_files(inputs, options);
 }
 
@@ -180,16 +195,16 @@ std::vector<std::filesystem::path> label_files(const std::vector<MapInput>& inpu
   return files;
 }
 
-void warn(const MapFromFiles& built, const std::string& label_scheme) {
-  for (const ForeignUnit& unit : built.foreign_units) {
+void warn(const InputNotes& notes, const std::optional<int>& epsg, bool has_labels, const std::string& label_scheme) {
+  for (const ForeignUnit& unit : notes.foreign_units) {
     spdlog::warn("{}: its unit is {} m, but its coordinates are taken as metres", unit.file.string(),
                  unit.metres_per_unit);
   }
-  if (!label_scheme.empty() && built.map.finest().channels().labels.empty()) {
+  if (!label_scheme.empty() && !has_labels) {
     spdlog::warn("--label-scheme {}: the files hold no labels", label_scheme);
   }
-  if (built.epsg_of_files && built.epsg_of_files != built.map.frame.epsg) {
-    spdlog::warn("the files are in EPSG:{}, the map says EPSG:{}", *built.epsg_of_files, *built.map.frame.epsg);
+  if (notes.epsg_of_files && epsg && notes.epsg_of_files != epsg) {
+    spdlog::warn("the files are in EPSG:{}, the map says EPSG:{}", *notes.epsg_of_files, *epsg);
   }
 }
 
@@ -205,53 +220,129 @@ std::string text_of_counts(std::size_t num_scans, std::size_t num_files) {
   return num_scans == num_files ? files : fmt::format("{} scans of {}", num_scans, files);
 }
 
-void print(const MapFromFiles& built, const std::filesystem::path& file, const ChosenInputs& chosen,
-           const ReadingReport& reading, double seconds, bool as_json) {
-  const std::vector<MapInput>& inputs = chosen.inputs;
-  const std::size_t num_files = count_files(inputs);
+// What a command that was built from files tells, beside what it made.
+struct BuildReport {
+  const InputNotes& notes;
+  const ChosenInputs& chosen;
+  ReadingReport reading;
+  double seconds = 0;
+};
+
+void add_report(nlohmann::ordered_json& json, const BuildReport& report) {
+  json["files"] = count_files(report.chosen.inputs);
+  json["scans"] = report.chosen.inputs.size();
+  if (report.chosen.poses) add_pose_frame(json, *report.chosen.poses);
+  json["dropped_points"] = report.notes.num_dropped;
+  json["points_out_of_range"] = report.notes.num_out_of_range;
+  json["findings"] = report.reading.json();
+  json["seconds"] = report.seconds;
+}
+
+std::string text_of(const BuildReport& report, const std::filesystem::path& output) {
+  const std::vector<MapInput>& inputs = report.chosen.inputs;
+  std::string text = fmt::format("{}: built from {} in {:.1f} s\n", output.string(),
+                                 text_of_counts(inputs.size(), count_files(inputs)), report.seconds);
+  if (report.notes.num_dropped > 0) {
+    text += fmt::format("dropped    {} points that are not finite\n", report.notes.num_dropped);
+  }
+  if (report.notes.num_out_of_range > 0) {
+    text += fmt::format("left out   {} points out of range\n", report.notes.num_out_of_range);
+  }
+  return text;
+}
+
+void print(const MapFromFiles& built, const std::filesystem::path& file, const BuildReport& report, bool as_json) {
   if (as_json) {
     nlohmann::ordered_json json = json_of_map(built.map, file);
-    json["files"] = num_files;
-    json["scans"] = inputs.size();
-    if (chosen.poses) add_pose_frame(json, *chosen.poses);
-    json["dropped_points"] = built.num_dropped;
-    json["points_out_of_range"] = built.num_out_of_range;
-    json["findings"] = reading.json();
-    json["seconds"] = seconds;
+    add_report(json, report);
     return print_json(json);
   }
-  print_result(
-      fmt::format("{}: built from {} in {:.1f} s\n", file.string(), text_of_counts(inputs.size(), num_files), seconds) +
-      (built.num_dropped > 0 ? fmt::format("dropped    {} points that are not finite\n", built.num_dropped)
-                             : std::string()) +
-      (built.num_out_of_range > 0 ? fmt::format("left out   {} points out of range\n", built.num_out_of_range)
-                                  : std::string()) +
-      text_of_map(built.map, file));
+  print_result(text_of(report, file) + text_of_map(built.map, file));
+}
+
+void print(const CityBuilt& built, const std::filesystem::path& folder, const BuildReport& report, bool as_json) {
+  if (as_json) {
+    nlohmann::ordered_json json = json_of_city(built.manifest, folder);
+    json["added_sources"] = built.added.size();
+    json["not_counted"] = built.not_counted;
+    add_report(json, report);
+    return print_json(json);
+  }
+  print_result(text_of(report, folder) + text_of_city(built.manifest));
+}
+
+ReadingReport complete(ReadingReport reading, const InputNotes& notes, const ChosenInputs& chosen,
+                       const BuildCommandOptions& options) {
+  reading.add(notes.findings);
+  if (chosen.poses) reading.add(*options.poses, chosen.poses->poses.findings);
+  reading.warn();
+  return reading;
+}
+
+double seconds_since(std::chrono::steady_clock::time_point start) {
+  return std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
+}
+
+void run_for_file(const ChosenInputs& chosen, const MapFromFilesOptions& files, const ReadingReport& listed,
+                  const BuildCommandOptions& options, const CommonOptions& common) {
+  const auto start = std::chrono::steady_clock::now();
+  const MapFromFiles built = build(chosen.inputs, files, common);
+  warn(built.notes, built.map.frame.epsg, !built.map.finest().channels().labels.empty(), options.label_scheme);
+  const ReadingReport reading = complete(listed, built.notes, chosen, options);
+  save_map(options.output.file, built.map, options.output.save);
+  print(built, options.output.file, {built.notes, chosen, reading, seconds_since(start)}, common.json);
+}
+
+void run_for_city(const ChosenInputs& chosen, const MapFromFilesOptions& files, const ReadingReport& listed,
+                  const BuildCommandOptions& options, const CommonOptions& common) {
+  const auto start = std::chrono::steady_clock::now();
+  const CityBuilt built =
+      build_city_of(chosen.inputs, files, options.output.save, options.output.file, options.city, common);
+  const std::vector<std::string>& channels = built.manifest.layout.channels;
+  warn(built.notes, built.manifest.layout.frame.epsg, std::ranges::count(channels, "label") > 0, options.label_scheme);
+  warn_not_counted(built);
+  const ReadingReport reading = complete(listed, built.notes, chosen, options);
+  const std::filesystem::path folder = options.city.into ? *options.city.into : options.output.file;
+  print(built, folder, {built.notes, chosen, reading, seconds_since(start)}, common.json);
+}
+
+// Before the work: whether there is one output, which can be written and is no input.
+void check_outputs(const BuildCommandOptions& options, const std::vector<std::filesystem::path>& inputs) {
+  if (options.output.file.empty() && !options.city.into) throw std::invalid_argument("--output or --into is required");
+  if (options.makes_city()) return;  // its writer checks the folder first of all
+  check_output(options.output.file, kMapKind, inputs);
+}
+
+// A city keeps its levels where the command says nothing of them.
+BuildOptions checked_build_options(const BuildCommandOptions& options) {
+  BuildOptions build = build_options(options);
+  if (!options.city.into) return build;
+  if (!options.anchor.empty())
+    throw std::invalid_argument("--anchor cannot be given with --into: a city keeps its own");
+  const City city = open_city(city_folder(*options.city.into));
+  if (!options.voxel_size && options.levels.empty()) build.voxel_sizes = city.manifest.layout.voxel_sizes;
+  return build;
 }
 
 ExitCode run(const BuildCommandOptions& options, const CommonOptions& common) {
-  const auto start = std::chrono::steady_clock::now();
-  const BuildOptions checked_options = build_options(options);
+  const BuildOptions build_options = checked_build_options(options);
   range_of(options);
-  ReadingReport reading;
-  const std::vector<std::filesystem::path> files = list_inputs(options.inputs, reading);
+  ReadingReport listed;
+  const std::vector<std::filesystem::path> files = list_inputs(options.inputs, listed);
   std::vector<std::filesystem::path> read_files = files;
   if (options.poses) read_files.push_back(*options.poses);
   if (options.labels) read_files.push_back(*options.labels);
-  check_output(options.output.file, kMapKind, read_files);
+  check_outputs(options, read_files);
   ChosenInputs chosen =
       choose_inputs(list_scans(files, options.read), options.selection, options.poses, options.pose_frame);
   if (options.labels) add_label_files(chosen.inputs, *options.labels);
-  check_output(options.output.file, kMapKind, label_files(chosen.inputs));
-
-  const MapFromFiles built = build(chosen.inputs, checked_options, options, common);
-  warn(built, options.label_scheme);
-  reading.add(built.findings);
-  if (chosen.poses) reading.add(*options.poses, chosen.poses->poses.findings);
-  reading.warn();
-  save_map(options.output.file, built.map, options.output.save);
-  const std::chrono::duration<double> elapsed = std::chrono::steady_clock::now() - start;
-  print(built, options.output.file, chosen, reading, elapsed.count(), common.json);
+  check_outputs(options, label_files(chosen.inputs));
+  const MapFromFilesOptions input_options = files_options(build_options, options, common);
+  if (options.makes_city()) {
+    run_for_city(chosen, input_options, listed, options, common);
+  } else {
+    run_for_file(chosen, input_options, listed, options, common);
+  }
   return ExitCode::kDone;
 }
 
@@ -263,7 +354,9 @@ Command build_command() {
       "vdbmap build street.las -o map.vdb\n"
       "vdbmap build velodyne/ --poses poses.txt --every 2 -o map.vdb\n"
       "vdbmap build sequences/00/velodyne --poses poses.txt --labels sequences/00/labels -o map.vdb\n"
-      "vdbmap build a.ply b.ply --levels 0.05,0.5 --epsg 25832 --epoch 3 -o map.vdb",
+      "vdbmap build a.ply b.ply --levels 0.05,0.5 --epsg 25832 --epoch 3 -o map.vdb\n"
+      "vdbmap build survey/ -o city/ --epoch 1 --memory 1G\n"
+      "vdbmap build more/ --into city/ --epoch 2",
       add_options, run);
 }
 

@@ -6,7 +6,7 @@
 #include <vector>
 
 #include "tools/cli/scan_selection.h"
-#include "vdbmap/io/map_from_files.h"
+#include "vdbmap/io/map_inputs.h"
 #include "vdbmap/io/scans/scan_poses.h"
 
 namespace vdbmap::cli {

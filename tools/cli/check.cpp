@@ -9,8 +9,11 @@
 #include "tools/cli/child_process.h"
 #include "tools/cli/command.h"
 #include "tools/cli/output.h"
+#include "tools/cli/progress.h"
 #include "vdbmap/io/file/text.h"
 #include "vdbmap/io/vdb/map_check.h"
+#include "vdbmap/store/city_check.h"
+#include "vdbmap/store/city_folder.h"
 
 namespace vdbmap::cli {
 namespace {
@@ -20,7 +23,7 @@ struct CheckOptions {
 };
 
 void add_options(CLI::App& app, CheckOptions& options) {
-  app.add_option("FILE", options.file, "A map, its channels, or a .vdb file of another program")
+  app.add_option("FILE", options.file, "A map, its channels, a city, or a .vdb file of another program")
       ->type_name("FILE")
       ->required();
 }
@@ -58,7 +61,38 @@ ExitCode run_here(const CheckOptions& options, const CommonOptions& common) {
   return all_passed(result.rules) ? ExitCode::kDone : ExitCode::kNo;
 }
 
+std::string text_of(const CityCheckResult& result) {
+  std::string text;
+  for (const CityProblem& problem : result.problems) {
+    text += fmt::format("FAILED  {}: {}\n", printable(problem.file.string()), printable(problem.what));
+  }
+  return text + fmt::format("{}  {} tiles of {} epochs\n", result.problems.empty() ? "passed" : "FAILED",
+                            result.num_tiles, result.num_epochs);
+}
+
+nlohmann::ordered_json json_of(const CityCheckResult& result, const std::filesystem::path& folder) {
+  auto problems = nlohmann::ordered_json::array();
+  for (const CityProblem& problem : result.problems) {
+    problems.push_back({{"file", problem.file.string()}, {"what", problem.what}});
+  }
+  return {{"folder", folder.string()},   {"is_city", true},           {"passed", result.problems.empty()},
+          {"epochs", result.num_epochs}, {"tiles", result.num_tiles}, {"problems", problems}};
+}
+
+ExitCode run_for_city(const std::filesystem::path& path, const CommonOptions& common) {
+  const City city = open_city(path);
+  Progress progress("checking tiles", city.manifest.tiles.size(), common);
+  const CityCheckResult result = check_city(city.folder, [&progress] { progress.advance(); });
+  if (common.json) {
+    print_json(json_of(result, path));
+  } else {
+    print_result(text_of(result));
+  }
+  return result.problems.empty() ? ExitCode::kDone : ExitCode::kNo;
+}
+
 ExitCode run(const CheckOptions& options, const CommonOptions& common) {
+  if (is_city(options.file)) return run_for_city(options.file, common);
   return run_in_child(
       options.file, [&] { return run_here(options, common); }, ChildLimits::for_file(options.file));
 }
@@ -66,10 +100,12 @@ ExitCode run(const CheckOptions& options, const CommonOptions& common) {
 }  // namespace
 
 Command check_command() {
-  return make_command<CheckOptions>("check", "Tell whether Blender, Houdini and others can open a .vdb file",
-                                    "vdbmap check map.vdb\n"
-                                    "vdbmap check smoke.vdb --json",
-                                    add_options, run);
+  return make_command<CheckOptions>(
+      "check", "Tell whether Blender, Houdini and others can open a .vdb file, and whether a city is whole",
+      "vdbmap check map.vdb\n"
+      "vdbmap check city/\n"
+      "vdbmap check smoke.vdb --json",
+      add_options, run);
 }
 
 }  // namespace vdbmap::cli

@@ -2,18 +2,25 @@
 #include <filesystem>
 #include <optional>
 #include <stdexcept>
+#include <string>
+#include <vector>
 
 #include <CLI/Option.hpp>
 #include <CLI/Validators.hpp>
 #include <nlohmann/json.hpp>
 #include <spdlog/fmt/fmt.h>
 
+#include "tools/cli/city_output.h"
 #include "tools/cli/command.h"
 #include "tools/cli/map_output.h"
+#include "tools/cli/number_list.h"
 #include "tools/cli/output.h"
+#include "vdbmap/io/file/text.h"
 #include "vdbmap/io/map_export.h"
 #include "vdbmap/io/vdb/map_channels.h"
 #include "vdbmap/io/vdb/map_file.h"
+#include "vdbmap/store/city_of_map.h"
+#include "vdbmap/store/city_window.h"
 
 namespace vdbmap::cli {
 namespace {
@@ -24,20 +31,24 @@ struct ExportCommandOptions {
   std::filesystem::path map;
   std::optional<std::filesystem::path> points;
   std::optional<double> level;
+  std::vector<double> box;
   std::optional<std::filesystem::path> channels;
   ChannelOptions channel_options;
 };
 
 void add_options(CLI::App& app, ExportCommandOptions& options) {
-  app.add_option("MAP", options.map, "The map")->type_name("FILE")->required();
+  app.add_option("MAP", options.map, "The map, or the city")->type_name("FILE")->required();
   auto* points =
       app.add_option("OUT", options.points,
-                     "Write one point a voxel to this .ply, .las (known classes in ASPRS's numbers) or .xyz file");
+                     "Write one point a voxel to this .ply, .las (known classes in ASPRS's numbers) or .xyz file; or "
+                     "the whole map to this .vdb file or, with a slash at its end, as a city into this folder");
   auto* channels = app.add_option("--channels", options.channels, "Write each attribute as a grid to this .vdb file");
   points->type_name("FILE")->excludes(channels);
   channels->type_name("FILE");
   app.add_option("--level", options.level, "Voxel size of the level whose voxels become points [m] (default: finest)")
       ->type_name("S")
+      ->excludes(channels);
+  add_number_list(app, "--box", options.box, 6, "X0,Y0,Z0,X1,Y1,Z1", "Only the voxels whose mean lies in this box")
       ->excludes(channels);
   app.add_option("--density", options.channel_options.density, "Density of the fog that renderers see [1/m]")
       ->check(CLI::Range(0.0, kMaxDensity).description(""))
@@ -63,25 +74,68 @@ void print(const std::filesystem::path& file, std::size_t num_voxels, const Comm
   }
 }
 
+bool is_whole_map_output(const std::filesystem::path& output) {
+  return is_city_output(output) || lower_case(output.extension().string()) == ".vdb";
+}
+
+void check_whole_map_options(const ExportCommandOptions& options) {
+  if (options.level || !options.box.empty()) {
+    throw std::invalid_argument("--level and --box choose points, but the output is a whole map");
+  }
+}
+
+// Of a city the tiles that the box reaches into, else the whole map.
+VoxelMap load_exported(const ExportCommandOptions& options) {
+  if (options.box.empty() || !is_city(options.map)) return load_map_or_city(options.map);
+  City city = open_city(options.map);
+  return load_window(city,
+                     tiles_in_box({Eigen::Vector3d(options.box.data()), Eigen::Vector3d(options.box.data() + 3)}));
+}
+
 void export_as_points(const ExportCommandOptions& options, const CommonOptions& common) {
   export_format(*options.points);
   check_output(*options.points, kPointsKind, {options.map});
-  const VoxelMap map = load_map(options.map);
+  const VoxelMap map = load_exported(options);
   const VoxelLevel& level = chosen_level(map, options);
-  export_points(*options.points, map, level);
-  print(*options.points, level.size(), common);
+  if (options.box.empty()) {
+    export_points(*options.points, map, level);
+    print(*options.points, level.size(), common);
+  } else {
+    const Extent box{Eigen::Vector3d(options.box.data()), Eigen::Vector3d(options.box.data() + 3)};
+    print(*options.points, export_points_in_box(*options.points, map, level, box), common);
+  }
+}
+
+// From a folder to a file, from a file to a folder.
+void export_whole_map(const ExportCommandOptions& options, const CommonOptions& common) {
+  check_whole_map_options(options);
+  if (is_city_output(*options.points)) {
+    const VoxelMap map = load_map_or_city(options.map);
+    const std::vector<CitySource> sources =
+        is_city(options.map) ? open_city(options.map).manifest.sources : std::vector<CitySource>();
+    save_city(city_folder(*options.points), map, {}, sources);
+    return print(*options.points, map.finest().size(), common);
+  }
+  check_output(*options.points, kMapKind, {options.map});
+  if (!is_city(options.map)) throw std::invalid_argument(options.points->string() + ": the map is such a file already");
+  City city = open_city(options.map);
+  const VoxelMap map = load_city(city);
+  save_map(*options.points, map, {city.manifest.layout.density});
+  print(*options.points, map.finest().size(), common);
 }
 
 void export_as_channels(const ExportCommandOptions& options, const CommonOptions& common) {
   check_output(*options.channels, kMapKind, {options.map});
-  const VoxelMap map = load_map(options.map);
+  const VoxelMap map = load_map_or_city(options.map);
   export_channels(*options.channels, map, options.channel_options);
   print(*options.channels, map.finest().size(), common);
 }
 
 ExitCode run(const ExportCommandOptions& options, const CommonOptions& common) {
   if (!options.points && !options.channels) throw std::invalid_argument("no OUT and no --channels: nothing to export");
-  if (options.points) {
+  if (options.points && is_whole_map_output(*options.points)) {
+    export_whole_map(options, common);
+  } else if (options.points) {
     export_as_points(options, common);
   } else {
     export_as_channels(options, common);
@@ -92,11 +146,15 @@ ExitCode run(const ExportCommandOptions& options, const CommonOptions& common) {
 }  // namespace
 
 Command export_command() {
-  return make_command<ExportCommandOptions>("export", "Write a map as points, or each attribute as a grid",
-                                            "vdbmap export map.vdb map.ply\n"
-                                            "vdbmap export map.vdb coarse.las --level 1\n"
-                                            "vdbmap export map.vdb --channels channels.vdb",
-                                            add_options, run);
+  return make_command<ExportCommandOptions>(
+      "export", "Write a map as points, in one file, as a city, or each attribute as a grid",
+      "vdbmap export map.vdb map.ply\n"
+      "vdbmap export map.vdb coarse.las --level 1\n"
+      "vdbmap export city/ part.ply --box 10,0,-2,60,30,20\n"
+      "vdbmap export city/ one.vdb\n"
+      "vdbmap export map.vdb city/\n"
+      "vdbmap export map.vdb --channels channels.vdb",
+      add_options, run);
 }
 
 }  // namespace vdbmap::cli

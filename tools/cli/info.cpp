@@ -6,12 +6,14 @@
 #include <spdlog/fmt/fmt.h>
 
 #include "tools/cli/child_process.h"
+#include "tools/cli/city_summary.h"
 #include "tools/cli/command.h"
 #include "tools/cli/map_summary.h"
 #include "tools/cli/output.h"
 #include "vdbmap/io/file/text.h"
 #include "vdbmap/io/vdb/map_file.h"
 #include "vdbmap/io/vdb/vdb_description.h"
+#include "vdbmap/store/city_folder.h"
 
 namespace vdbmap::cli {
 namespace {
@@ -23,7 +25,11 @@ struct InfoOptions {
 };
 
 void add_options(CLI::App& app, InfoOptions& options) {
-  app.add_option("FILE", options.file, "A map, or a .vdb file of another program")->type_name("FILE")->required();
+  app.add_option(
+         "FILE", options.file,
+         "A map, a city (the folder that build made, or one of its epochs: city@1), or a .vdb file of another program")
+      ->type_name("FILE")
+      ->required();
 }
 
 std::string text_of(const TextMetadata& metadata) {
@@ -100,7 +106,20 @@ ExitCode run_here(const InfoOptions& options, const CommonOptions& common) {
   return ExitCode::kDone;
 }
 
+// The manifest tells all: no tile is opened.
+void tell_city(const City& city, const std::filesystem::path& path, const CommonOptions& common) {
+  if (common.json) {
+    print_json(json_of_city(city.manifest, path));
+  } else {
+    print_result(printable(path.string()) + ": a city of vdbmap\n" + text_of_city(city.manifest));
+  }
+}
+
 ExitCode run(const InfoOptions& options, const CommonOptions& common) {
+  if (is_city(options.file)) {
+    tell_city(open_city(options.file), options.file, common);
+    return ExitCode::kDone;
+  }
   return run_in_child(
       options.file, [&] { return run_here(options, common); }, ChildLimits::for_file(options.file));
 }
@@ -108,8 +127,9 @@ ExitCode run(const InfoOptions& options, const CommonOptions& common) {
 }  // namespace
 
 Command info_command() {
-  return make_command<InfoOptions>("info", "Say what a map, or a .vdb file of another program, holds",
+  return make_command<InfoOptions>("info", "Say what a map, a city, or a .vdb file of another program, holds",
                                    "vdbmap info map.vdb\n"
+                                   "vdbmap info city/\n"
                                    "vdbmap info smoke.vdb --json",
                                    add_options, run);
 }

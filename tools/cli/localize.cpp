@@ -14,13 +14,15 @@
 #include "tools/cli/localize_modes.h"
 #include "tools/cli/localize_report.h"
 #include "tools/cli/map_output.h"
+#include "tools/cli/number_list.h"
 #include "tools/cli/output.h"
 #include "tools/cli/pose_frame.h"
 #include "tools/cli/reading.h"
 #include "tools/cli/scan_selection.h"
+#include "tools/cli/search_area.h"
 #include "vdbmap/core/error.h"
 #include "vdbmap/io/points/point_reader.h"
-#include "vdbmap/io/vdb/map_file.h"
+#include "vdbmap/store/city_folder.h"
 
 namespace vdbmap::cli {
 namespace {
@@ -30,6 +32,7 @@ struct LocalizeCommandOptions {
   std::vector<std::filesystem::path> scans;
   std::optional<std::filesystem::path> initial;
   std::optional<std::filesystem::path> odometry;
+  std::vector<double> near;
   std::filesystem::path output;
   std::optional<std::filesystem::path> report;
   std::string format = "kitti";
@@ -51,12 +54,15 @@ void add_search_options(CLI::App& app, LocalizeCommandOptions& options, CLI::Opt
       ->check(CLI::Range(1, 10000).description(""))
       ->type_name("N")
       ->excludes(initial);
+  add_number_list(app, "--near", options.near, 3, "X,Y,RADIUS",
+                  "Of a city, look only around this place [m]: tiles out of the scans' reach are not opened")
+      ->excludes(initial);
   app.add_flag("--upright", options.localizer.upright, "Roll and pitch of the scans are within 10 degrees of the map's")
       ->excludes(initial);
 }
 
 void add_options(CLI::App& app, LocalizeCommandOptions& options) {
-  app.add_option("MAP", options.map, "The map (.vdb)")->type_name("FILE")->required();
+  app.add_option("MAP", options.map, "The map (.vdb), or a city")->type_name("FILE")->required();
   app.add_option("SCANS", options.scans,
                  "Scans in the frame of the sensor, in order, and folders of them; of a Velodyne capture each turn is "
                  "one")
@@ -120,7 +126,10 @@ LocalizeReport localize(const std::vector<ScanPlace>& scans, const LocalizeComma
   const std::optional<std::filesystem::path>& file = options.initial ? options.initial : options.odometry;
   std::optional<ScanPoses> given;
   if (file) given = read_given(*file, scans, options);
-  const VoxelMap map = load_map(options.map);
+  if (!options.near.empty() && !is_city(options.map)) throw std::invalid_argument("--near needs a city, not a file");
+  const SearchArea area{options.near, options.initial ? std::optional(given->poses) : std::nullopt,
+                        options.localizer.fine.range.max};
+  const VoxelMap map = load_search_area(options.map, area);
   const std::string reason = options.initial ? "" : registration::reason_not_searchable(map);
   if (!reason.empty()) throw IoError::malformed(options.map, reason);
   const ChosenScans chosen{scans, options.selection.every - 1};
@@ -162,6 +171,7 @@ Command localize_command() {
       "vdbmap localize map.vdb velodyne/ -o poses.txt --report report.json\n"
       "vdbmap localize map.vdb velodyne/ --odometry odometry.txt --batch 40 -o poses.txt\n"
       "vdbmap localize map.vdb velodyne/ --every 2 --offset 1 --initial guesses.txt -o poses.txt --json\n"
+      "vdbmap localize city/ velodyne/ --near 552158,5802631,150 -o poses.txt\n"
       "vdbmap localize map.vdb scan.pcd --initial guess.txt --format tum -o pose.tum",
       add_options, run);
 }

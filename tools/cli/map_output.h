@@ -17,8 +17,8 @@ struct MapOutput {
   SaveOptions save;
 };
 
-/// Declares --output and --density.
-void add_map_output(CLI::App& app, MapOutput& output);
+/// Declares --output, which may be the folder of a city where the command can make one, and --density.
+void add_map_output(CLI::App& app, MapOutput& output, bool may_be_city = false);
 
 /// Before the work: throws std::invalid_argument where the output's name stands for another format or is that of one of
 /// the inputs, IoError where it cannot be written.

@@ -12,8 +12,10 @@
 #include "tools/cli/number_list.h"
 #include "tools/cli/output.h"
 #include "tools/cli/voxel_text.h"
+#include "vdbmap/core/tile_id.h"
 #include "vdbmap/core/voxel_query.h"
 #include "vdbmap/io/vdb/map_file.h"
+#include "vdbmap/store/city_window.h"
 
 namespace vdbmap::cli {
 namespace {
@@ -27,7 +29,7 @@ struct QueryOptions {
 };
 
 void add_options(CLI::App& app, QueryOptions& options) {
-  app.add_option("MAP", options.map, "The map to look into")->type_name("FILE")->required();
+  app.add_option("MAP", options.map, "The map, or the city, to look into")->type_name("FILE")->required();
   add_number_list(app, "--at", options.at, 3, "X,Y,Z", "The voxel that holds this point");
   app.add_option("--id", options.id, "The voxel of this id: 16 hexadecimal digits")->type_name("ID");
   add_number_list(app, "--box", options.box, 6, "X0,Y0,Z0,X1,Y1,Z1", "All voxels that touch this box");
@@ -69,10 +71,35 @@ std::string nothing_found(const VoxelLevel& level, const QueryOptions& options) 
   return fmt::format("no voxel of the {:g} m level {}\n", level.voxel_size(), where);
 }
 
+// The tile of the point, where ids reach it.
+std::optional<TileId> tile_at(const City& city, const Eigen::Vector3d& point) {
+  const Eigen::Vector3d local = point - city.manifest.layout.frame.anchor;
+  if (!is_addressable(local, voxels_per_metre(city.manifest.layout.voxel_sizes.front()))) return std::nullopt;
+  return tile_of_point(local);
+}
+
+std::optional<TileId> tile_asked_for(const City& city, const QueryOptions& options) {
+  if (!options.at.empty()) return tile_at(city, Eigen::Vector3d(options.at.data()));
+  const double voxel_size = options.level.value_or(city.manifest.layout.voxel_sizes.front());
+  return tile_of_voxel(voxel_of_id(id_of(options.id)), voxels_per_tile(voxel_size));
+}
+
+// Of a city, what may hold the answer.
+VoxelMap load_asked_for(const QueryOptions& options) {
+  if (!is_city(options.map)) return load_map(options.map);
+  City city = open_city(options.map);
+  if (!options.box.empty()) {
+    return load_window(city,
+                       tiles_in_box({Eigen::Vector3d(options.box.data()), Eigen::Vector3d(options.box.data() + 3)}));
+  }
+  const std::optional<TileId> tile = tile_asked_for(city, options);
+  return load_window(city, [&](const CityTile& candidate) { return tile == candidate.id; });
+}
+
 ExitCode run(const QueryOptions& options, const CommonOptions& common) {
   check_one_question(options);
   if (!options.id.empty()) id_of(options.id);  // before a map of minutes is read
-  const VoxelMap map = load_map(options.map);
+  const VoxelMap map = load_asked_for(options);
   const VoxelLevel& level = chosen_level(map, options.level);
   const std::vector<VoxelInfo> voxels = find(map, level, options);
   if (common.json) {
@@ -89,6 +116,7 @@ Command query_command() {
   return make_command<QueryOptions>("query", "Show the voxels at a point, of an id or in a box",
                                     "vdbmap query map.vdb --at 12.3,4.5,-1.6\n"
                                     "vdbmap query map.vdb --id 40000c0000f00003 --level 1\n"
+                                    "vdbmap query city/ --at 552158.95,5802631.83,62.25\n"
                                     "vdbmap query map.vdb --box 10,0,-2,12,3,1 --json",
                                     add_options, run);
 }

@@ -26,7 +26,7 @@
 #include "vdbmap/io/file/text.h"
 #include "vdbmap/io/points/point_reader.h"
 #include "vdbmap/io/poses/trajectory_file.h"
-#include "vdbmap/io/vdb/map_file.h"
+#include "vdbmap/store/city_window.h"
 
 namespace vdbmap::cli {
 namespace {
@@ -85,7 +85,7 @@ void add_overlay_options(CLI::App& app, RenderCommandOptions& options) {
 }
 
 void add_options(CLI::App& app, RenderCommandOptions& options) {
-  app.add_option("MAP", options.map, "The map (.vdb)")->type_name("FILE")->required();
+  app.add_option("MAP", options.map, "The map (.vdb), or a city")->type_name("FILE")->required();
   app.add_option("-o,--output", options.output, "Write the picture to this .png or .jpg file")
       ->type_name("FILE")
       ->required();
@@ -153,7 +153,7 @@ void check_not_empty(const VoxelMap& map, const std::filesystem::path& path) {
 ExitCode run(const RenderCommandOptions& options, const CommonOptions& common) {
   check_inputs(options);
   const RenderOverlays overlays = read_overlays(options);
-  const VoxelMap map = load_map(options.map);
+  const VoxelMap map = load_map_or_city(options.map);
   check_not_empty(map, options.map);
 
   const auto start = std::chrono::steady_clock::now();

@@ -15,21 +15,27 @@
 namespace vdbmap {
 namespace {
 
-bool reaches_most(const Eigen::Vector3d& anchor, const PointCloud& cloud, const Eigen::Isometry3d& map_from_cloud,
-                  double voxels_per_metre) {
+// Counts the points reached, up to `enough` of them and then as it comes.
+std::size_t count_reached_up_to(std::size_t enough, const Eigen::Vector3d& anchor, const PointCloud& cloud,
+                                const Eigen::Isometry3d& map_from_cloud, double voxels_per_metre) {
   constexpr std::size_t kGrain = 1 << 14;
   Eigen::Isometry3d local_from_cloud = map_from_cloud;
   local_from_cloud.translation() -= anchor;
   const CellFinder cells(local_from_cloud, voxels_per_metre);
-  const std::size_t most = cloud.size() / 2 + 1;
   std::atomic<std::size_t> num_reached{0};
   parallel_ranges(cloud.size(), kGrain, [&](std::size_t begin, std::size_t end) {
-    if (num_reached >= most) return;
+    if (num_reached >= enough) return;
     std::size_t count = 0;
     for (std::size_t i = begin; i < end; ++i) count += cells.reaches(cloud.positions[i]) ? 1 : 0;
     num_reached += count;
   });
-  return num_reached >= most;
+  return num_reached;
+}
+
+bool reaches_most(const Eigen::Vector3d& anchor, const PointCloud& cloud, const Eigen::Isometry3d& map_from_cloud,
+                  double voxels_per_metre) {
+  const std::size_t most = cloud.size() / 2 + 1;
+  return count_reached_up_to(most, anchor, cloud, map_from_cloud, voxels_per_metre) >= most;
 }
 
 // Of the points that are finite, of which there is one at least.
@@ -57,6 +63,11 @@ Eigen::Vector3d median_of(const PointCloud& cloud, const Eigen::Isometry3d& map_
 }
 
 }  // namespace
+
+std::size_t count_reached(const Eigen::Vector3d& anchor, const PointCloud& cloud,
+                          const Eigen::Isometry3d& map_from_cloud, double voxels_per_metre) {
+  return count_reached_up_to(cloud.size() + 1, anchor, cloud, map_from_cloud, voxels_per_metre);
+}
 
 Eigen::Vector3d anchor_for(const PointCloud& cloud, const Eigen::Isometry3d& map_from_cloud, double voxels_per_metre) {
   const Eigen::Vector3d near_first = choose_anchor(map_from_cloud * cloud.positions.front());

@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #pragma once
 
+#include <cstddef>
+
 #include <Eigen/Geometry>
 
 #include "vdbmap/core/point_cloud.h"
@@ -11,5 +13,9 @@ namespace vdbmap {
 /// first point where voxel ids reach more than half of the points from there, else of the medians of its coordinates,
 /// which a few stray points do not move. Throws std::out_of_range where the points lie farther out than an anchor may.
 Eigen::Vector3d anchor_for(const PointCloud& cloud, const Eigen::Isometry3d& map_from_cloud, double voxels_per_metre);
+
+/// How many points of a cloud voxel ids reach from an anchor.
+std::size_t count_reached(const Eigen::Vector3d& anchor, const PointCloud& cloud,
+                          const Eigen::Isometry3d& map_from_cloud, double voxels_per_metre);
 
 }  // namespace vdbmap

@@ -2,7 +2,6 @@
 #include "vdbmap/core/map_builder.h"
 
 #include <algorithm>
-#include <sstream>
 #include <stdexcept>
 #include <utility>
 
@@ -40,7 +39,6 @@ struct MapBuilder::State {
   void begin(const PointCloud& cloud, const Eigen::Isometry3d& map_from_cloud);
   SortedPoints sort(const PointCloud& cloud, std::size_t begin, std::size_t end,
                     const Eigen::Isometry3d& map_from_cloud);
-  void check_reached(const PointCloud& cloud) const;
   void add_up_to(std::size_t end, const PointCloud& cloud, const Eigen::Isometry3d& map_from_cloud);
   VoxelMap make_map(std::optional<SortedPoints> last_points);
   VoxelMap make_map_and_begin_anew(std::optional<SortedPoints> last_points);
@@ -88,18 +86,6 @@ SortedPoints MapBuilder::State::sort(const PointCloud& cloud, std::size_t begin,
   return sorted;
 }
 
-// Most of a cloud lies elsewhere: that is no stray point, but another place or another unit.
-void MapBuilder::State::check_reached(const PointCloud& cloud) const {
-  if (2 * unreachable.count < cloud.size() || unreachable.count == 0) return;
-  const Eigen::Vector3d& point = unreachable.first;
-  std::ostringstream message;
-  message.precision(10);
-  message << "point " << point.x() << ", " << point.y() << ", " << point.z() << " is more than " << unreachable.reach
-          << " m from the anchor, the farthest that voxel ids reach";
-  if (cloud.size() > 1) message << ", as are " << unreachable.count << " of " << cloud.size() << " points";
-  throw std::out_of_range(message.str());
-}
-
 // Adds the points before `end`, chunk by chunk.
 void MapBuilder::State::add_up_to(std::size_t end, const PointCloud& cloud, const Eigen::Isometry3d& map_from_cloud) {
   for (std::size_t begin = 0; begin < end; begin += kChunkSize) {
@@ -112,7 +98,7 @@ void MapBuilder::add(const PointCloud& cloud, const Eigen::Isometry3d& map_from_
   if (cloud.empty()) return;
   state_->begin(cloud, map_from_cloud);
   state_->add_up_to(cloud.size(), cloud, map_from_cloud);
-  state_->check_reached(cloud);
+  check_reached(state_->unreachable, cloud.size());
 }
 
 VoxelMap MapBuilder::State::make_map(std::optional<SortedPoints> last_points) {
@@ -145,7 +131,7 @@ VoxelMap MapBuilder::finish(const PointCloud& last_cloud, const Eigen::Isometry3
   const std::size_t last_chunk = (last_cloud.size() - 1) / kChunkSize * kChunkSize;
   state_->add_up_to(last_chunk, last_cloud, map_from_cloud);
   SortedPoints last_points = state_->sort(last_cloud, last_chunk, last_cloud.size(), map_from_cloud);
-  state_->check_reached(last_cloud);
+  check_reached(state_->unreachable, last_cloud.size());
   return state_->make_map_and_begin_anew(std::move(last_points));
 }
 

@@ -10,6 +10,7 @@
 #include <Eigen/Geometry>
 
 #include "vdbmap/core/point_cloud.h"
+#include "vdbmap/core/unreachable_points.h"
 #include "vdbmap/core/voxel_map.h"
 
 namespace vdbmap {
@@ -23,13 +24,6 @@ struct BuildOptions {
 
   /// Throws std::invalid_argument naming the value and what is allowed.
   void check() const;
-};
-
-/// Points of a cloud that voxel ids do not reach from the anchor: they are no part of the map.
-struct UnreachablePoints {
-  std::size_t count = 0;
-  Eigen::Vector3d first = Eigen::Vector3d::Zero();  ///< where the first of them lies, as the cloud says
-  double reach = 0;                                 ///< [m] from the anchor on each axis, as far as ids reach
 };
 
 /// Collects points and makes a map of them. Memory grows with the voxels, not with the points. The map is the same, bit

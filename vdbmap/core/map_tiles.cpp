@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cstddef>
 #include <functional>
+#include <map>
 #include <stdexcept>
 #include <utility>
 
@@ -29,6 +30,16 @@ void list_leaves(const VoxelLevel& level, const IsWanted& is_wanted, std::vector
   for (const VoxelLeaf& leaf : level.leaves()) {
     if (is_wanted(leaf)) sources.push_back({key_of_voxel(leaf.origin()), &level, &leaf});
   }
+}
+
+// The leaves of each tile, in tree order.
+std::map<TileId, std::vector<LeafSource>> group_by_tile(const VoxelLevel& level) {
+  const std::int32_t per_tile = voxels_per_tile(level.voxel_size());
+  std::map<TileId, std::vector<LeafSource>> groups;
+  for (const VoxelLeaf& leaf : level.leaves()) {
+    groups[tile_of_voxel(leaf.origin(), per_tile)].push_back({key_of_voxel(leaf.origin()), &level, &leaf});
+  }
+  return groups;
 }
 
 // Numbers the records; returns how many there are.
@@ -133,13 +144,16 @@ std::vector<TileId> tiles_of(const VoxelMap& map) {
   return tiles;
 }
 
-VoxelMap cut_tile(const VoxelMap& map, const TileId& tile) {
+VoxelMap cut_tile(const VoxelMap& map, const TileId& tile, double margin) {
   VoxelMap part = without_levels(map);
   for (const VoxelLevel& level : map.levels) {
     const std::int32_t per_tile = voxels_per_tile(level.voxel_size());
+    const std::int32_t margin_voxels = margin_in_voxels(margin, level.voxel_size());
+    const auto is_wanted = [&](const VoxelLeaf& leaf) {
+      return contains(tiles_around(leaf.origin(), VoxelLeaf::DIM, margin_voxels, per_tile), tile);
+    };
     std::vector<LeafSource> sources;
-    list_leaves(
-        level, [&](const VoxelLeaf& leaf) { return tile_of_voxel(leaf.origin(), per_tile) == tile; }, sources);
+    list_leaves(level, is_wanted, sources);
     part.levels.push_back(level_of(std::move(sources), level));
   }
   return part;
@@ -147,8 +161,28 @@ VoxelMap cut_tile(const VoxelMap& map, const TileId& tile) {
 
 VoxelLevel cut_leaves(const VoxelLevel& level, const openvdb::CoordBBox& box) {
   std::vector<LeafSource> sources;
-  list_leaves(level, [&](const VoxelLeaf& leaf) { return box.isInside(leaf.origin()); }, sources);
+  list_leaves(
+      level, [&](const VoxelLeaf& leaf) { return box.isInside(leaf.origin()); }, sources);
   return level_of(std::move(sources), level);
+}
+
+void for_each_tile(const VoxelMap& map, const std::function<void(const TileId&, const VoxelMap&)>& body) {
+  std::vector<std::map<TileId, std::vector<LeafSource>>> leaves_of_tile;  // one a level
+  for (const VoxelLevel& level : map.levels) leaves_of_tile.push_back(group_by_tile(level));
+  for (const TileId& tile : tiles_of(map)) {
+    VoxelMap part = without_levels(map);
+    for (std::size_t i = 0; i < map.levels.size(); ++i) {
+      part.levels.push_back(level_of(std::move(leaves_of_tile[i][tile]), map.levels[i]));
+    }
+    body(tile, part);
+  }
+}
+
+VoxelMap empty_map(const MapFrame& frame, const std::vector<double>& voxel_sizes) {
+  VoxelMap map;
+  map.frame = frame;
+  for (const double size : voxel_sizes) map.levels.push_back({size, {}, {}});
+  return map;
 }
 
 VoxelMap splice(std::span<const VoxelMap> maps) {

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #pragma once
 
+#include <functional>
 #include <span>
 #include <vector>
 
@@ -13,8 +14,19 @@ namespace vdbmap {
 std::vector<TileId> tiles_of(const VoxelMap& map);
 
 /// What a map has in one tile: leaves and records as they are, on all levels. Normals keep what they saw beyond the
-/// border.
-VoxelMap cut_tile(const VoxelMap& map, const TileId& tile);
+/// border. With a margin [m], leaves too that begin within it around the tile.
+VoxelMap cut_tile(const VoxelMap& map, const TileId& tile, double margin = 0);
+
+/// Calls body(tile, part) for every tile of tiles_of(), in their order, with what cut_tile() cuts.
+void for_each_tile(const VoxelMap& map, const std::function<void(const TileId&, const VoxelMap&)>& body);
+
+/// The margin [m] in which a tile's voxels have their neighbours, on all levels: one voxel of the coarsest. Of a map
+/// that has the voxels of a tile and of its margin on the finest level, the tile's own normals and coarser levels are
+/// those of the whole map, bit for bit.
+inline double neighbor_margin(const std::vector<double>& voxel_sizes) { return voxel_sizes.back(); }
+
+/// A map of these levels without voxels.
+VoxelMap empty_map(const MapFrame& frame, const std::vector<double>& voxel_sizes);
 
 /// The leaves of a level whose lowest voxels lie in a box, with their records as they are.
 VoxelLevel cut_leaves(const VoxelLevel& level, const openvdb::CoordBBox& box);

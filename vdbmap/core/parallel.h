@@ -44,6 +44,11 @@ void parallel_sort(std::vector<Value>& values, const Less& less) {
   tbb::parallel_sort(values.begin(), values.end(), less);
 }
 
+/// How many threads may work in this process.
+inline std::size_t num_threads() {
+  return tbb::global_control::active_value(tbb::global_control::max_allowed_parallelism);
+}
+
 /// While it lives, at most `max_threads` threads work in this process (0: all cores).
 class ThreadLimit {
  public:

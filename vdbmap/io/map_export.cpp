@@ -11,6 +11,7 @@
 #include "vdbmap/core/srgb.h"
 #include "vdbmap/io/las/las.h"
 #include "vdbmap/io/ply/ply.h"
+#include "vdbmap/io/points/point_cloud_filter.h"
 #include "vdbmap/io/table/xyz.h"
 
 namespace vdbmap {
@@ -43,6 +44,17 @@ void make_decimal(std::vector<Eigen::Vector3d>& positions, const VoxelMap& map, 
   parallel_for_each_voxel(level, [&](const VoxelIndex& voxel, std::size_t number) {
     positions[number] = mean_in_original_system(map.frame, level.records()[number], voxel, level.voxel_size());
   });
+}
+
+// The points as a format keeps them.
+PointCloud cloud_for(PointFormat format, const VoxelMap& map, const VoxelLevel& level) {
+  PointCloud cloud = points_of_level(map, level);
+  if (format == PointFormat::kLas) {
+    make_las_labels(cloud.labels, map.label_scheme);
+  } else {
+    make_decimal(cloud.positions, map, level);
+  }
+  return cloud;
 }
 
 }  // namespace
@@ -82,14 +94,22 @@ void write_points(const std::filesystem::path& path, const PointCloud& cloud, co
 }
 
 void export_points(const std::filesystem::path& path, const VoxelMap& map, const VoxelLevel& level) {
-  const PointFormat format = export_format(path);
-  PointCloud cloud = points_of_level(map, level);
-  if (format == PointFormat::kLas) {
-    make_las_labels(cloud.labels, map.label_scheme);
-  } else {
-    make_decimal(cloud.positions, map, level);
+  write_points(path, cloud_for(export_format(path), map, level), map.frame.epsg);
+}
+
+std::size_t export_points_in_box(const std::filesystem::path& path, const VoxelMap& map, const VoxelLevel& level,
+                                 const Extent& box) {
+  PointCloud cloud = cloud_for(export_format(path), map, level);
+  std::vector<std::size_t> outside;
+  for (std::size_t i = 0; i < cloud.size(); ++i) {
+    const Eigen::Array3d point = cloud.positions[i];
+    const bool is_inside = (point >= box.min.array()).all() && (point <= box.max.array()).all();
+    if (!is_inside) outside.push_back(i);
   }
+  remove_points(cloud, outside);
+  if (cloud.empty()) throw std::invalid_argument("no voxel of the level has its mean in the box");
   write_points(path, cloud, map.frame.epsg);
+  return cloud.size();
 }
 
 }  // namespace vdbmap

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #pragma once
 
+#include <cstddef>
 #include <filesystem>
 #include <optional>
 
@@ -28,5 +29,10 @@ void write_points(const std::filesystem::path& path, const PointCloud& cloud,
 /// 31 that LAS 1.2 has room for becomes 1, unclassified. Throws IoError, and std::invalid_argument as export_format()
 /// and write_las() do.
 void export_points(const std::filesystem::path& path, const VoxelMap& map, const VoxelLevel& level);
+
+/// The same of the voxels whose mean lies in the closed box [m, original system]; returns how many these are. Throws
+/// as export_points() does, and std::invalid_argument where there is none.
+std::size_t export_points_in_box(const std::filesystem::path& path, const VoxelMap& map, const VoxelLevel& level,
+                                 const Extent& box);
 
 }  // namespace vdbmap

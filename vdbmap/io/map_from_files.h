@@ -1,58 +1,25 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #pragma once
 
-#include <cstddef>
-#include <filesystem>
-#include <functional>
-#include <optional>
 #include <vector>
 
-#include <Eigen/Geometry>
-
 #include "vdbmap/core/map_builder.h"
-#include "vdbmap/core/range_limits.h"
-#include "vdbmap/io/scans/scan_sequence.h"
+#include "vdbmap/io/map_inputs.h"
 
 namespace vdbmap {
 
-/// A scan and where its points lie.
-struct MapInput {
-  ScanPlace scan;
-  /// Nothing: the points are in map coordinates.
-  std::optional<Eigen::Isometry3d> map_from_scan = std::nullopt;
-  /// The .label file of its points' classes, which count instead of its own labels.
-  std::optional<std::filesystem::path> labels = std::nullopt;
-};
-
 struct MapFromFilesOptions {
-  BuildOptions build;                          ///< without `epsg`, that of the files in map coordinates is taken
-  std::optional<LabelScheme> label_scheme;     ///< whose numbers labels are, instead of what the files' formats say
-  ReadOptions read;                            ///< `is_in_sensor_frame` as the inputs have poses
-  std::optional<RangeLimits> range;            ///< of the points of inputs with poses, from their sensor
-  bool reads_ahead = true;                     ///< a thread of its own reads the next scan while one is folded
-  std::function<void()> on_scan_done = [] {};  ///< called after each scan
-};
-
-/// A file whose coordinates are not in metres.
-struct ForeignUnit {
-  std::filesystem::path file;
-  double metres_per_unit = 1.0;
+  BuildOptions build;  ///< without `epsg`, that of the files in map coordinates is taken
+  InputOptions inputs;
 };
 
 /// A map, and what was noticed in the files.
 struct MapFromFiles {
   VoxelMap map;
-  std::size_t num_points = 0;
-  std::size_t num_dropped = 0;             ///< points with a coordinate that is not finite
-  std::size_t num_out_of_range = 0;        ///< points that the range left out
-  std::vector<FileFinding> findings;       ///< what else was left out or is doubtful, in the order of the files
-  std::optional<int> epsg_of_files;        ///< of the files in map coordinates, where one says so
-  std::vector<ForeignUnit> foreign_units;  ///< taken as they are, as if in metres
+  InputNotes notes;
 };
 
-/// The map of all points in the scans. At most two scans are in memory at once. Throws IoError naming the scan
-/// that cannot be read, lies beyond the addressable range with half of its points or more, or has another EPSG code or
-/// label scheme than one before; and std::invalid_argument for no inputs, bad options and a range that leaves no point.
+/// The map of all points in the scans. Throws as read_inputs() does, and std::invalid_argument for bad options.
 MapFromFiles build_map_from_files(const std::vector<MapInput>& inputs, const MapFromFilesOptions& options = {});
 
 }  // namespace vdbmap

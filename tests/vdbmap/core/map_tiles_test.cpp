@@ -2,7 +2,6 @@
 #include "vdbmap/core/map_tiles.h"
 
 #include <algorithm>
-#include <random>
 #include <set>
 #include <span>
 #include <stdexcept>
@@ -10,31 +9,15 @@
 
 #include <gtest/gtest.h>
 
+#include "tests/support/city_folders.h"
 #include "tests/support/sample_maps.h"
 #include "tests/support/threads.h"
+#include "vdbmap/core/hierarchy.h"
 #include "vdbmap/core/map_builder.h"
+#include "vdbmap/core/normals.h"
 
 namespace vdbmap {
 namespace {
-
-// A street across some tiles on both sides of the axes, with every channel.
-const VoxelMap& street_of_tiles() {
-  static const VoxelMap map = [] {
-    std::mt19937 random(3);
-    const auto number = [&] { return static_cast<double>(random()) * 0x1p-32; };
-    PointCloud cloud;
-    for (int i = 0; i < 40'000; ++i) {
-      cloud.positions.emplace_back(300 * number() - 140, 150 * number() - 70, 4 * number() - 2);
-      cloud.intensities.push_back(static_cast<float>(number()));
-      cloud.labels.push_back(static_cast<std::uint16_t>(3 * number()));
-    }
-    BuildOptions options = test::anchored(Eigen::Vector3d::Zero());
-    options.voxel_sizes = {0.1, 1, 8};
-    options.epoch = 4;
-    return build_map(cloud, options);
-  }();
-  return map;
-}
 
 std::vector<VoxelMap> cut_all(const VoxelMap& map) {
   std::vector<VoxelMap> tiles;
@@ -56,17 +39,17 @@ TEST(TileId, BordersBelongToTheTileAbove) {
 
 TEST(MapTiles, AreThoseInWhichVoxelsLie) {
   std::set<TileId> expected;
-  const VoxelLevel& finest = street_of_tiles().finest();
+  const VoxelLevel& finest = test::street_of_tiles().finest();
   for_each_voxel(finest, [&](const VoxelIndex& voxel, std::size_t) {
     expected.insert(tile_of_point(center_of_voxel(voxel, finest.voxel_size())));
   });
-  const std::vector<TileId> tiles = tiles_of(street_of_tiles());
+  const std::vector<TileId> tiles = tiles_of(test::street_of_tiles());
   EXPECT_EQ(tiles, std::vector<TileId>(expected.begin(), expected.end()));
   EXPECT_EQ(tiles.size(), 6U * 4U);
 }
 
 TEST(MapTiles, HoldTheVoxelsOfTheirColumnAsTheyAre) {
-  const VoxelMap& map = street_of_tiles();
+  const VoxelMap& map = test::street_of_tiles();
   const TileId tile{-1, 0};
   const VoxelMap part = cut_tile(map, tile);
   ASSERT_EQ(part.levels.size(), map.levels.size());
@@ -88,8 +71,47 @@ TEST(MapTiles, HoldTheVoxelsOfTheirColumnAsTheyAre) {
   }
 }
 
+TEST(MapTiles, AreCutOneByOneAsAllAtOnce) {
+  const VoxelMap& map = test::street_of_tiles();
+  std::vector<TileId> tiles;
+  for_each_tile(map, [&](const TileId& tile, const VoxelMap& part) {
+    tiles.push_back(tile);
+    EXPECT_EQ(test::difference(part, cut_tile(map, tile)), "");
+  });
+  EXPECT_EQ(tiles, tiles_of(map));
+}
+
+TEST(MapTiles, AMarginTakesTheLeavesThatReachIntoIt) {
+  const VoxelMap& map = test::street_of_tiles();
+  const TileId tile{-1, 0};
+  const VoxelMap part = cut_tile(map, tile, 1.0);
+  std::size_t count = 0;  // of 10 cm: 1 m are begun in the second leaf of 0.8 m, which is taken whole
+  for_each_voxel(map.finest(), [&](const VoxelIndex& voxel, std::size_t) {
+    count += voxel.x() >= -640 - 16 && voxel.x() < 16 && voxel.y() >= -16 && voxel.y() < 640 + 16 ? 1 : 0;
+  });
+  EXPECT_GT(count, cut_tile(map, tile).finest().size());
+  EXPECT_EQ(part.finest().size(), count);
+}
+
+// What the margin is for: a tile is made of its own voxels and those of the margin alone.
+TEST(MapTiles, ATileWithItsMarginHasTheNormalsAndLevelsOfTheWholeMap) {
+  const VoxelMap& map = test::street_of_tiles();
+  const std::vector<double> voxel_sizes = {0.1, 1, 8};
+  for (const TileId& tile : tiles_of(map)) {
+    VoxelMap part = cut_tile(map, tile, neighbor_margin(voxel_sizes));
+    for (VoxelRecord& record : part.levels.front().records()) {
+      record.normal_code = 0;
+      record.planarity_code = 0;
+    }
+    part.levels.erase(part.levels.begin() + 1, part.levels.end());
+    compute_normals(part.levels.front());
+    add_coarser_levels(part, voxel_sizes);
+    EXPECT_EQ(test::difference(cut_tile(part, tile), cut_tile(map, tile)), "");
+  }
+}
+
 TEST(MapTiles, GiveTheMapAgainInWhateverOrderTheyCome) {
-  const VoxelMap& map = street_of_tiles();
+  const VoxelMap& map = test::street_of_tiles();
   std::vector<VoxelMap> tiles = cut_all(map);
   EXPECT_EQ(test::difference(splice(tiles), map), "");
   std::ranges::reverse(tiles);
@@ -100,14 +122,14 @@ TEST(MapTiles, GiveTheMapAgainInWhateverOrderTheyCome) {
 }
 
 TEST(MapTiles, ATileWithoutVoxelsChangesNothing) {
-  const VoxelMap& map = street_of_tiles();
+  const VoxelMap& map = test::street_of_tiles();
   const std::vector<VoxelMap> maps{cut_tile(map, {99, 99}), map};
   EXPECT_EQ(maps.front().finest().size(), 0U);
   EXPECT_EQ(test::difference(splice(maps), map), "");
 }
 
 TEST(MapTiles, WhatDoesNotBelongTogetherIsNotSpliced) {
-  const VoxelMap& map = street_of_tiles();
+  const VoxelMap& map = test::street_of_tiles();
   const VoxelMap tile = cut_tile(map, {0, 0});
   const auto with_tile = [&](const auto& change) {
     std::vector<VoxelMap> maps{tile, cut_tile(map, {1, 0})};

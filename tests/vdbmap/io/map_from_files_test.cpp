@@ -47,7 +47,7 @@ TEST_F(MapFromFilesTest, EqualsBuildingFromAllPoints) {
   builder.add(a);
   builder.add(b);
   const VoxelMap expected = builder.finish();
-  EXPECT_EQ(built.num_points, 150U);
+  EXPECT_EQ(built.notes.num_points, 150U);
   EXPECT_EQ(built.map.frame, expected.frame);
   EXPECT_TRUE(std::ranges::equal(built.map.finest().records(), expected.finest().records()));
 }
@@ -57,10 +57,10 @@ TEST_F(MapFromFilesTest, ReadingAheadChangesNothing) {
                                         ply("c.ply", line(30, {1, 0, 0}))};
   MapFromFilesOptions options;
   int num_done = 0;
-  options.on_scan_done = [&num_done] { ++num_done; };
+  options.inputs.on_scan_done = [&num_done] { ++num_done; };
   const MapFromFiles ahead = build_map_from_files(inputs, options);
   EXPECT_EQ(num_done, 3);
-  options.reads_ahead = false;
+  options.inputs.reads_ahead = false;
   const MapFromFiles one_by_one = build_map_from_files(inputs, options);
   EXPECT_TRUE(std::ranges::equal(ahead.map.finest().records(), one_by_one.map.finest().records()));
 }
@@ -83,18 +83,18 @@ TEST_F(MapFromFilesTest, TheRangeIsMeasuredFromTheSensor) {
   input.labels = folder_ / "a.label";
   input.map_from_scan = Eigen::Translation3d(1000, 0, 0);
   MapFromFilesOptions options;
-  options.range = {2, 5};
+  options.inputs.range = {2, 5};
   const MapFromFiles built = build_map_from_files({input}, options);
-  EXPECT_EQ(built.num_points, 3U);
-  EXPECT_EQ(built.num_out_of_range, 2U);
+  EXPECT_EQ(built.notes.num_points, 3U);
+  EXPECT_EQ(built.notes.num_out_of_range, 2U);
   std::vector<std::int32_t> labels = built.map.finest().channels().labels;
   std::ranges::sort(labels);
   EXPECT_EQ(labels, (std::vector<std::int32_t>{12, 13, 14}));
 
   input.map_from_scan = std::nullopt;  // no sensor is known to measure from
-  EXPECT_EQ(build_map_from_files({input}, options).num_points, 5U);
+  EXPECT_EQ(build_map_from_files({input}, options).notes.num_points, 5U);
   input.map_from_scan = Eigen::Isometry3d::Identity();
-  options.range = {50, 60};
+  options.inputs.range = {50, 60};
   EXPECT_THROW(build_map_from_files({input}, options), std::invalid_argument);
 }
 
@@ -102,11 +102,11 @@ TEST_F(MapFromFilesTest, TellsWhatTheFilesHeld) {
   write_raw(folder_ / "holes.xyz", "1 1 1\n2 nan 2\n");
   write_las(folder_ / "a.las", line(10, {0, 0, 0}), {.epsg = 25832});
   const MapFromFiles built = build_map_from_files({whole_file("holes.xyz"), whole_file("a.las")});
-  EXPECT_EQ(built.num_points, 11U);
-  EXPECT_EQ(built.num_dropped, 1U);
-  EXPECT_EQ(built.epsg_of_files, 25832);
+  EXPECT_EQ(built.notes.num_points, 11U);
+  EXPECT_EQ(built.notes.num_dropped, 1U);
+  EXPECT_EQ(built.notes.epsg_of_files, 25832);
   EXPECT_EQ(built.map.frame.epsg, 25832);
-  EXPECT_TRUE(built.foreign_units.empty());
+  EXPECT_TRUE(built.notes.foreign_units.empty());
 }
 
 TEST_F(MapFromFilesTest, LasFilesAndLabelFilesSayWhoseNumbersTheirLabelsAre) {
@@ -128,7 +128,7 @@ TEST_F(MapFromFilesTest, LasFilesAndLabelFilesSayWhoseNumbersTheirLabelsAre) {
   EXPECT_EQ(build_map_from_files({whole_file("a.las"), ply("plain.ply", line(2, {5, 0, 0}))}).map.label_scheme,
             LabelScheme::kAsprs);
   MapFromFilesOptions options;
-  options.label_scheme = LabelScheme::kSemanticKitti;
+  options.inputs.label_scheme = LabelScheme::kSemanticKitti;
   EXPECT_EQ(build_map_from_files({ply_input, whole_file("a.las")}, options).map.label_scheme,
             LabelScheme::kSemanticKitti);
   EXPECT_EQ(io_error_of([&] {
@@ -146,7 +146,7 @@ TEST_F(MapFromFilesTest, AnEpsgCodeOfTheOptionsComesFirst) {
   MapFromFilesOptions options;
   options.build.epsg = 32632;
   const MapFromFiles built = build_map_from_files({whole_file("a.las")}, options);
-  EXPECT_EQ(built.epsg_of_files, 25832);
+  EXPECT_EQ(built.notes.epsg_of_files, 25832);
   EXPECT_EQ(built.map.frame.epsg, 32632);
 }
 
@@ -165,14 +165,14 @@ TEST_F(MapFromFilesTest, PointsBeyondTheRangeAreAFinding) {
     const MapInput input = ply("stray.ply", cloud);
     const MapFromFiles built = build_map_from_files({input});
     EXPECT_EQ(built.map.frame, expected.frame);
-    EXPECT_EQ(built.num_points, 9U);
-    ASSERT_EQ(built.findings.size(), 1U);
-    EXPECT_EQ(built.findings[0].file, input.scan.file);
-    EXPECT_EQ(built.findings[0].finding.text(),
+    EXPECT_EQ(built.notes.num_points, 9U);
+    ASSERT_EQ(built.notes.findings.size(), 1U);
+    EXPECT_EQ(built.notes.findings[0].file, input.scan.file);
+    EXPECT_EQ(built.notes.findings[0].finding.text(),
               "1 points left out that are more than 104857.6 m from the map's anchor (0, 7, 0.25)");
 
     MapFromFilesOptions strict;
-    strict.read.strict = true;
+    strict.inputs.read.strict = true;
     EXPECT_EQ(io_error_of([&] { build_map_from_files({input}, strict); }).substr(0, 11), "stray.ply: ");
   }
 }

@@ -85,6 +85,15 @@ void write_file(const std::filesystem::path& target, std::string_view bytes) {
   file.commit();
 }
 
+void sync_folder(const std::filesystem::path& folder) {
+  const int descriptor = ::open(folder.c_str(), O_RDONLY | O_DIRECTORY | O_CLOEXEC);
+  if (descriptor < 0) throw IoError::system(folder, "cannot open", errno);
+  const int error = ::fsync(descriptor) == 0 ? 0 : errno;
+  ::close(descriptor);
+  if (error != 0 && error != EINVAL)
+    throw IoError::system(folder, "cannot write", error);  // EINVAL: no such thing here
+}
+
 void check_writable(const std::filesystem::path& target) { AtomicFile probe(target); }
 
 void remove_unfinished_files() noexcept {

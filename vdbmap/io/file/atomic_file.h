@@ -40,6 +40,9 @@ class AtomicFile {
 /// Writes a whole file atomically.
 void write_file(const std::filesystem::path& target, std::string_view bytes);
 
+/// Flushes a folder to disk: the names in it, as fsync of a file does not. Throws IoError (system).
+void sync_folder(const std::filesystem::path& folder);
+
 /// Throws IoError (system) unless a file could be created at `target`: call it before hours of work.
 void check_writable(const std::filesystem::path& target);
 

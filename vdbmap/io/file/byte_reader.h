@@ -48,8 +48,17 @@ char line_end_of(std::string_view text);
 /// A file read from front to back. Whatever would leave the file throws IoError with path, offset and reason.
 class ByteReader {
  public:
-  /// Reads the whole file: the memory taken is the size that the file system reports. Throws IoError.
-  explicit ByteReader(std::filesystem::path path);
+  /// When a file is read.
+  enum class Loading {
+    kWhole,     ///< at once: the memory taken is the size that the file system reports
+    kOnDemand,  ///< as far as bytes() asks for it, until forget(); one thread at a time may use such a reader
+  };
+
+  /// Opens the file. Throws IoError.
+  explicit ByteReader(std::filesystem::path path, Loading loading = Loading::kWhole);
+  ~ByteReader();
+  ByteReader(ByteReader&&) noexcept;
+  ByteReader& operator=(ByteReader&&) noexcept;
 
   const std::filesystem::path& path() const { return path_; }
   std::uint64_t size() const { return size_; }                 ///< [bytes] of the file
@@ -62,6 +71,9 @@ class ByteReader {
 
   /// The next `count` bytes; the view lives as long as the reader.
   std::string_view bytes(std::uint64_t count);
+
+  /// Gives the memory back of the bytes before `end`, of a reader on demand; views of them are void.
+  void forget_before(std::uint64_t end);
 
   /// The next number, little or big endian.
   template <Scalar T>
@@ -83,11 +95,16 @@ class ByteReader {
   [[noreturn]] void fail_line(const std::string& reason) const;
 
   /// All bytes of the file, wherever the next read is; the view lives as long as the reader.
-  std::string_view all() const { return {data_.get(), size_}; }
+  std::string_view all() const { return view(0, size_); }
 
  private:
+  class PartsInMemory;
+
+  std::string_view view(std::uint64_t begin, std::uint64_t count) const;
+
   std::filesystem::path path_;
   std::unique_ptr<char[]> data_;
+  std::unique_ptr<PartsInMemory> parts_;  // instead of data_, on demand
   std::uint64_t size_ = 0;
   std::uint64_t offset_ = 0;
   std::uint64_t line_ = 0;

@@ -9,6 +9,7 @@
 
 #include "vdbmap/io/file/byte_reader.h"
 #include "vdbmap/io/points/point_collector.h"
+#include "vdbmap/io/points/point_reader.h"
 #include "vdbmap/io/table/broken_points.h"
 #include "vdbmap/io/table/missing_values.h"
 #include "vdbmap/io/table/xyz_header.h"

@@ -2,10 +2,8 @@
 #include "vdbmap/io/vdb/vdb_file.h"
 
 #include <algorithm>
-#include <array>
 #include <cerrno>
 #include <cstdint>
-#include <cstring>
 #include <fstream>
 #include <functional>
 #include <memory>
@@ -14,20 +12,14 @@
 
 #include <openvdb/io/GridDescriptor.h>
 #include <openvdb/io/io.h>
-#include <xxhash.h>
 
 #include "vdbmap/core/error.h"
 #include "vdbmap/io/file/atomic_file.h"
+#include "vdbmap/io/vdb/vdb_checksum.h"
 #include "vdbmap/io/vdb/vdb_outline.h"
 
 namespace vdbmap {
 namespace {
-
-// After 8 bytes magic number, 4 file version, 8 library version and 1 grid offsets comes the id.
-constexpr std::size_t kIdBegin = 21;
-constexpr std::size_t kIdSize = 36;
-// An id that begins so is the checksum of the rest: "vdbmap" in ASCII codes.
-constexpr std::string_view kIdPrefix = "7664626d-6170-";
 
 // The archive of openvdb::io::File on streams of ours: File itself sees neither a full disk nor the end of a file that
 // promises more than it holds, behind which it goes on reading nothing into ever more memory.
@@ -164,37 +156,6 @@ std::ifstream open_for_reading(const std::filesystem::path& path) {
   return stream;
 }
 
-std::string read_id(const std::filesystem::path& path) {
-  std::ifstream stream = open_for_reading(path);
-  std::string id(kIdSize, '\0');
-  stream.seekg(kIdBegin);
-  stream.read(id.data(), kIdSize);
-  return id;
-}
-
-// The id that belongs to the content of a file: its checksum without the id itself, in the form of a UUID.
-std::string id_of_content(const std::filesystem::path& path) {
-  std::ifstream stream = open_for_reading(path);
-  XXH3_state_t* state = XXH3_createState();
-  XXH3_128bits_reset(state);
-  std::array<char, 1 << 16> chunk;
-  bool is_first = true;
-  while (stream.read(chunk.data(), chunk.size()) || stream.gcount() > 0) {
-    const auto size = static_cast<std::size_t>(stream.gcount());
-    if (is_first && size >= kIdBegin + kIdSize) std::memset(chunk.data() + kIdBegin, 0, kIdSize);
-    is_first = false;
-    XXH3_128bits_update(state, chunk.data(), size);
-  }
-  const XXH128_hash_t hash = XXH3_128bits_digest(state);
-  XXH3_freeState(state);
-
-  std::array<char, kIdSize + 1> id;
-  std::snprintf(id.data(), id.size(), "%.*s%04x-%04x-%012llx", static_cast<int>(kIdPrefix.size()), kIdPrefix.data(),
-                static_cast<unsigned>(hash.high64 >> 16 & 0xffff), static_cast<unsigned>(hash.high64 & 0xffff),
-                static_cast<unsigned long long>(hash.low64 & 0xffffffffffff));
-  return id.data();
-}
-
 template <typename Grids>
 void write_grids(const std::filesystem::path& path, const Grids& grids, const openvdb::MetaMap& metadata) {
   SeekableArchive archive;
@@ -203,23 +164,6 @@ void write_grids(const std::filesystem::path& path, const Grids& grids, const op
   stream.exceptions(std::ios::badbit | std::ios::failbit);
   archive.write_to(stream, grids, metadata);
   stream.close();
-}
-
-void replace_id(const std::filesystem::path& path) {
-  const std::string id = id_of_content(path);
-  std::fstream stream(path, std::ios::binary | std::ios::in | std::ios::out);
-  stream.exceptions(std::ios::badbit | std::ios::failbit);
-  stream.seekp(kIdBegin);
-  stream.write(id.data(), kIdSize);
-  stream.close();
-}
-
-// A file of ours is compared with its checksum; of others, nothing is known.
-bool is_known_to_be_whole(const std::filesystem::path& path) {
-  const std::string id = read_id(path);
-  if (!id.starts_with(kIdPrefix)) return false;
-  if (id == id_of_content(path)) return true;
-  throw IoError::malformed(path, "is damaged: its content does not match its checksum");
 }
 
 VdbContent read_grids(const std::filesystem::path& path, const GridFilter& is_wanted) {
@@ -234,7 +178,7 @@ VdbContent read_grids(const std::filesystem::path& path, const GridFilter& is_wa
 
 VdbContent read_vdb(const std::filesystem::path& path, const GridFilter& is_wanted) {
   read_vdb_outline(path);
-  const bool is_whole = is_known_to_be_whole(path);
+  const bool is_whole = check_checksum(path);
   openvdb::initialize();
   try {
     return read_grids(path, is_wanted);
@@ -256,7 +200,7 @@ void write_atomically(const std::filesystem::path& path, const Grids& grids, con
   AtomicFile target(path);
   try {
     write_grids(target.temporary_path(), grids, metadata);
-    replace_id(target.temporary_path());
+    write_checksum(target.temporary_path());
   } catch (const std::ios_base::failure&) {
     throw IoError::system(path, "cannot write", errno);
   } catch (const openvdb::Exception& error) {

@@ -1,0 +1,48 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "tools/cli/build_city.h"
+
+#include <optional>
+#include <set>
+
+#include <spdlog/fmt/fmt.h>
+#include <spdlog/spdlog.h>
+
+#include "tools/cli/progress.h"
+
+namespace vdbmap::cli {
+namespace {
+
+std::size_t count_distinct_files(const std::vector<MapInput>& inputs) {
+  std::set<std::filesystem::path> files;
+  for (const MapInput& input : inputs) files.insert(input.scan.file);
+  return files.size();
+}
+
+}  // namespace
+
+CityBuilt build_city_of(const std::vector<MapInput>& inputs, const MapFromFilesOptions& files, const SaveOptions& save,
+                        const std::filesystem::path& output, const CityOutput& city, const CommonOptions& common) {
+  std::optional<Progress> progress;
+  progress.emplace("identifying files", count_distinct_files(inputs), common);
+  CityBuildOptions options;
+  options.files = files;
+  options.save = save;
+  options.memory_bytes = city.memory_bytes;
+  if (city.keep_epochs) options.keep_epochs = *city.keep_epochs;
+  options.on_file_hashed = [&] { progress->advance(); };
+  options.on_reading_begun = [&](std::size_t count) { progress.emplace("building from scans", count, common); };
+  options.files.inputs.on_scan_done = [&] { progress->advance(); };
+  options.on_tiles_begun = [&](std::size_t count) { progress.emplace("finishing tiles", count, common); };
+  options.on_tile_done = [&] { progress->advance(); };
+  return city.into ? add_to_city(city_folder(*city.into), inputs, options)
+                   : build_city(city_folder(output), inputs, options);
+}
+
+void warn_not_counted(const CityBuilt& built) {
+  if (built.not_counted.empty()) return;
+  const std::size_t num_others = built.not_counted.size() - 1;
+  spdlog::warn("{}{}: counted already, left out", built.not_counted.front(),
+               num_others == 0 ? "" : fmt::format(" and {} more", num_others));
+}
+
+}  // namespace vdbmap::cli

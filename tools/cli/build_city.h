@@ -1,0 +1,20 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#pragma once
+
+#include <filesystem>
+#include <vector>
+
+#include "tools/cli/city_output.h"
+#include "tools/cli/common_options.h"
+#include "vdbmap/store/city_build.h"
+
+namespace vdbmap::cli {
+
+/// Builds a city in the folder `output`, or adds to that of --into, and shows how far it is.
+CityBuilt build_city_of(const std::vector<MapInput>& inputs, const MapFromFilesOptions& files, const SaveOptions& save,
+                        const std::filesystem::path& output, const CityOutput& city, const CommonOptions& common);
+
+/// Logs which inputs were not counted, as they are in the city already or twice among them.
+void warn_not_counted(const CityBuilt& built);
+
+}  // namespace vdbmap::cli

@@ -1,0 +1,47 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "tools/cli/city_output.h"
+
+#include <limits>
+#include <string>
+#include <system_error>
+
+#include <CLI/Option.hpp>
+#include <CLI/Validators.hpp>
+
+namespace vdbmap::cli {
+namespace {
+
+constexpr std::uint64_t kLeastMemory = std::uint64_t{1} << 20;  // [bytes]
+
+std::string check_memory(const std::string& bytes) {
+  return std::stoull(bytes) >= kLeastMemory ? "" : "is " + bytes + " bytes, expected 1M or more";
+}
+
+}  // namespace
+
+bool is_city_output(const std::filesystem::path& output) {
+  std::error_code missing;
+  return output.native().ends_with('/') || std::filesystem::is_directory(output, missing);
+}
+
+std::filesystem::path city_folder(const std::filesystem::path& output) {
+  return output.has_filename() ? output : output.parent_path();
+}
+
+void add_city_output(CLI::App& app, CityOutput& city, CLI::Option* output) {
+  CLI::Option* into =
+      app.add_option("--into", city.into, "Add to this city; a source that is counted in it already is left out")
+          ->type_name("FOLDER")
+          ->excludes(output);
+  app.add_option("--memory", city.memory_bytes,
+                 "What building a city may take, as 500M or 2G: beyond, sums of points go through the disk, [2G]")
+      ->transform(CLI::AsSizeValue(false).description(""))
+      ->check(CLI::Validator(check_memory, ""))
+      ->type_name("BYTES");
+  app.add_option("--keep-epochs", city.keep_epochs, "Keep only the latest N epochs of the city (default: all)")
+      ->check(CLI::Range(std::size_t{1}, std::numeric_limits<std::size_t>::max() / 2).description(""))
+      ->type_name("N")
+      ->needs(into);
+}
+
+}  // namespace vdbmap::cli

@@ -1,0 +1,79 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "tools/cli/city_summary.h"
+
+#include <cstdint>
+#include <optional>
+#include <vector>
+
+#include <nlohmann/json.hpp>
+#include <spdlog/fmt/fmt.h>
+
+namespace vdbmap::cli {
+namespace {
+
+std::string fact(const char* name, const std::string& value) { return fmt::format("{:<11}{}\n", name, value); }
+
+std::string corner_text(const Eigen::Vector3d& point) {
+  return fmt::format("{:.10g}, {:.10g}, {:.10g}", point.x(), point.y(), point.z());
+}
+
+nlohmann::ordered_json json_of_corner(const Eigen::Vector3d& point) { return {point.x(), point.y(), point.z()}; }
+
+std::vector<std::string> attributes_of_city(const CityLayout& layout) {
+  std::vector<std::string> names = {"mean", "covariance", "count", "normal", "planarity"};
+  if (layout.has_color) names.emplace_back("color");
+  names.insert(names.end(), layout.channels.begin(), layout.channels.end());
+  return names;
+}
+
+std::uint64_t num_bytes(const CityManifest& manifest) {
+  std::uint64_t bytes = 0;
+  for (const CityTile& tile : manifest.tiles) bytes += tile.num_bytes;
+  return bytes;
+}
+
+}  // namespace
+
+std::string text_of_city(const CityManifest& manifest) {
+  const CityLayout& layout = manifest.layout;
+  std::string text = fact("points", std::to_string(num_points(manifest)));
+  const std::vector<std::uint64_t> voxels = num_voxels(manifest);
+  for (std::size_t i = 0; i < voxels.size(); ++i) {
+    text += fact("level", fmt::format("{:g} m, {} voxels", layout.voxel_sizes[i], voxels[i]));
+  }
+  if (const auto box = extent(manifest)) text += fact("extent", corner_text(box->min) + " to " + corner_text(box->max));
+  text += fact("anchor", corner_text(layout.frame.anchor));
+  text += fact("EPSG", layout.frame.epsg ? std::to_string(*layout.frame.epsg) : "unknown");
+  text += fact("attributes", fmt::format("{}", fmt::join(attributes_of_city(layout), ", ")));
+  text += fact("colours", layout.has_color ? "yes" : "no");
+  text += fact("epoch", std::to_string(manifest.epoch));
+  text += fact("sources", std::to_string(manifest.sources.size()));
+  return text + fact("size", fmt::format("{} tiles, {:.1f} MB", manifest.tiles.size(),
+                                         static_cast<double>(num_bytes(manifest)) / 1e6));
+}
+
+nlohmann::ordered_json json_of_city(const CityManifest& manifest, const std::filesystem::path& folder) {
+  const CityLayout& layout = manifest.layout;
+  const std::vector<std::uint64_t> voxels = num_voxels(manifest);
+  auto levels = nlohmann::ordered_json::array();
+  for (std::size_t i = 0; i < voxels.size(); ++i) {
+    levels.push_back({{"voxel_size_m", layout.voxel_sizes[i]}, {"voxels", voxels[i]}});
+  }
+  nlohmann::ordered_json box = nullptr;
+  if (const auto all = extent(manifest)) box = {{"min", json_of_corner(all->min)}, {"max", json_of_corner(all->max)}};
+  return {{"folder", folder.string()},
+          {"is_city", true},
+          {"epoch", manifest.epoch},
+          {"tiles", manifest.tiles.size()},
+          {"sources", manifest.sources.size()},
+          {"points", num_points(manifest)},
+          {"levels", levels},
+          {"extent", box},
+          {"anchor", json_of_corner(layout.frame.anchor)},
+          {"epsg", layout.frame.epsg ? nlohmann::ordered_json(*layout.frame.epsg) : nlohmann::ordered_json(nullptr)},
+          {"attributes", attributes_of_city(layout)},
+          {"has_color", layout.has_color},
+          {"bytes", num_bytes(manifest)}};
+}
+
+}  // namespace vdbmap::cli

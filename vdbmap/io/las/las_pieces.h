@@ -1,0 +1,38 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#pragma once
+
+#include <cstddef>
+#include <filesystem>
+#include <memory>
+#include <optional>
+
+#include "vdbmap/io/points/point_reader.h"
+
+namespace vdbmap {
+
+/// Reads a large LAS file piece by piece: together the pieces are the cloud that read_points() gives, one after the
+/// other. What only all points tell, the scale of the colours and whether an attribute is known, is found in a first
+/// walk through the file.
+class LasPieces {
+ public:
+  /// Nothing for other formats, compressed points, files of no more than `most_points`, and those that have points
+  /// which read_points() drops or coordinates that it judges as a whole: they must be read in one piece. Throws IoError
+  /// as read_points() does.
+  static std::optional<LasPieces> open(const std::filesystem::path& path, const ReadOptions& options,
+                                       std::size_t most_points);
+  ~LasPieces();
+  LasPieces(LasPieces&&) noexcept;
+  LasPieces& operator=(LasPieces&&) noexcept;
+
+  /// The next piece; what was noticed in the file comes with each. To be called until is_at_end().
+  ReadResult next();
+  bool is_at_end() const;
+
+ private:
+  struct State;
+  explicit LasPieces(std::unique_ptr<State> state);
+
+  std::unique_ptr<State> state_;
+};
+
+}  // namespace vdbmap

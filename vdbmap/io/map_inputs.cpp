@@ -1,0 +1,196 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "vdbmap/io/map_inputs.h"
+
+#include <future>
+#include <limits>
+#include <sstream>
+#include <stdexcept>
+#include <string>
+#include <utility>
+
+#include "vdbmap/core/error.h"
+#include "vdbmap/io/kitti/label_file.h"
+#include "vdbmap/io/las/las_pieces.h"
+#include "vdbmap/io/points/point_cloud_filter.h"
+
+namespace vdbmap {
+namespace {
+
+// Points that were read together.
+struct Piece {
+  std::size_t index = 0;  // of the input
+  ReadResult read;
+  std::size_t num_out_of_range = 0;
+  bool is_first = true;  // of the input
+  bool is_last = true;
+};
+
+// Goes through the inputs, one piece after the other.
+class PieceReader {
+ public:
+  PieceReader(const std::vector<MapInput>& inputs, const InputOptions& options, const ReadOptions& read)
+      : inputs_(inputs), options_(options), reader_(read) {}
+
+  bool is_at_end() const { return next_ == inputs_.size(); }
+
+  Piece read() {
+    const bool is_first = !pieces_;
+    if (is_first) open_large_file();
+    if (!pieces_) return read_whole();
+    Piece piece{next_, pieces_->next(), 0, is_first, pieces_->is_at_end()};
+    if (piece.is_last) {
+      pieces_.reset();
+      ++next_;
+    }
+    return piece;
+  }
+
+ private:
+  // Labels of a file of their own, and turns of a capture, belong to the places of points in whole files.
+  void open_large_file() {
+    const MapInput& input = inputs_[next_];
+    const bool is_limited = options_.most_points < std::numeric_limits<std::size_t>::max();
+    if (!is_limited || input.labels || input.scan.turn) return;
+    pieces_ = LasPieces::open(input.scan.file, reader_.options(), options_.most_points);
+  }
+
+  Piece read_whole() {
+    const MapInput& input = inputs_[next_];
+    Piece piece{next_++, reader_.read(input.scan)};
+    if (input.labels) attach_labels(piece.read, *input.labels);
+    if (options_.range && input.map_from_scan) piece.num_out_of_range = drop_out_of_range(piece.read, *options_.range);
+    return piece;
+  }
+
+  const std::vector<MapInput>& inputs_;
+  const InputOptions& options_;
+  ScanReader reader_;
+  std::optional<LasPieces> pieces_;
+  std::size_t next_ = 0;
+};
+
+// The reader serves one piece at a time: the one before must have been taken.
+std::future<Piece> start_reading(PieceReader& reader, const InputOptions& options) {
+  return std::async(options.reads_ahead ? std::launch::async : std::launch::deferred,
+                    [&reader] { return reader.read(); });
+}
+
+ReadOptions read_options(const std::vector<MapInput>& inputs, ReadOptions options) {
+  options.is_in_sensor_frame = inputs.front().map_from_scan.has_value();
+  return options;
+}
+
+void note_epsg(InputNotes& notes, const std::filesystem::path& file, const std::optional<int>& epsg) {
+  if (!epsg) return;
+  if (notes.epsg_of_files.value_or(*epsg) != *epsg) {
+    throw IoError::malformed(file, "is in EPSG:" + std::to_string(*epsg) +
+                                       ", files before it are in EPSG:" + std::to_string(*notes.epsg_of_files));
+  }
+  notes.epsg_of_files = epsg;
+}
+
+// What the files say of their labels.
+class SchemeNotes {
+ public:
+  void note(const std::filesystem::path& file, LabelScheme scheme) {
+    has_unknown_ |= scheme == LabelScheme::kUnknown;
+    if (scheme != LabelScheme::kUnknown && known_.value_or(scheme) != scheme) {
+      throw IoError::malformed(file, "has labels of " + std::string(text_of(scheme)) + ", files before it of " +
+                                         std::string(text_of(*known_)));
+    }
+    if (scheme != LabelScheme::kUnknown) known_ = scheme;
+  }
+
+  // One file that does not say whose numbers its labels are is enough for nobody to know.
+  LabelScheme of_all() const { return has_unknown_ ? LabelScheme::kUnknown : known_.value_or(LabelScheme::kUnknown); }
+
+ private:
+  std::optional<LabelScheme> known_;
+  bool has_unknown_ = false;
+};
+
+void note(InputNotes& notes, const MapInput& input, const ReadResult& read) {
+  notes.num_dropped += read.num_non_finite;
+  for (const ReadFinding& finding : read.findings) notes.findings.push_back({input.scan.file, finding});
+  if (read.metres_per_unit != 1.0) notes.foreign_units.push_back({input.scan.file, read.metres_per_unit});
+  if (!input.map_from_scan) note_epsg(notes, input.scan.file, read.epsg);
+}
+
+// What is left out of an input, piece by piece.
+struct LeftOut {
+  UnreachablePoints unreachable;
+  std::size_t num_points = 0;  // left out or not
+
+  void add(const UnreachablePoints& of_piece, std::size_t num_points_of_piece) {
+    if (unreachable.count == 0) unreachable.first = of_piece.first;
+    unreachable.reach = of_piece.reach;
+    unreachable.count += of_piece.count;
+    num_points += num_points_of_piece;
+  }
+};
+
+// An error of the body is one of the scan.
+template <typename Body>
+void name_scan(const MapInput& input, const Body& body) {
+  try {
+    body();
+  } catch (const std::out_of_range& error) {
+    throw IoError::malformed(input.scan.name(), error.what());
+  }
+}
+
+ReadFinding finding_of(const UnreachablePoints& unreachable) {
+  std::ostringstream what;
+  what.precision(10);
+  what << "points left out that are more than " << unreachable.reach << " m from the map's anchor";
+  std::ostringstream first;
+  first.precision(10);
+  first << unreachable.first.x() << ", " << unreachable.first.y() << ", " << unreachable.first.z();
+  return {what.str(), unreachable.count, first.str(), /*is_damage=*/true};
+}
+
+void note(InputNotes& notes, const MapInput& input, const UnreachablePoints& unreachable, bool is_strict) {
+  if (unreachable.count == 0) return;
+  const ReadFinding finding = finding_of(unreachable);
+  if (is_strict) refuse_damage(input.scan.file, {finding});
+  notes.num_points -= unreachable.count;
+  notes.findings.push_back({input.scan.file, finding});
+}
+
+}  // namespace
+
+Eigen::Isometry3d pose_of(const MapInput& input) { return input.map_from_scan.value_or(Eigen::Isometry3d::Identity()); }
+
+InputNotes read_inputs(const std::vector<MapInput>& inputs, const InputOptions& options, const TakePoints& take) {
+  if (inputs.empty()) throw std::invalid_argument("no scans to build a map from");
+  InputNotes notes;
+  SchemeNotes schemes;
+  LeftOut left_out;
+  PieceReader reader(inputs, options, read_options(inputs, options.read));
+  std::future<Piece> next = start_reading(reader, options);
+  while (next.valid()) {
+    const Piece piece = next.get();
+    if (!reader.is_at_end()) next = start_reading(reader, options);
+    const MapInput& input = inputs[piece.index];
+    const PointCloud& cloud = piece.read.cloud;
+    if (piece.is_first) {
+      note(notes, input, piece.read);
+      left_out = {};
+      if (!cloud.labels.empty()) schemes.note(input.scan.file, options.label_scheme.value_or(piece.read.label_scheme));
+    }
+    notes.num_points += cloud.size();
+    notes.num_out_of_range += piece.num_out_of_range;
+    name_scan(input, [&] {
+      left_out.add(take({piece.index, cloud, piece.is_first && piece.is_last}), cloud.size());
+      if (piece.is_last) check_reached(left_out.unreachable, left_out.num_points);
+    });
+    if (!piece.is_last) continue;
+    note(notes, input, left_out.unreachable, options.read.strict);
+    options.on_scan_done();
+  }
+  if (notes.num_points == 0) throw std::invalid_argument("no point of the scans is within the range");
+  notes.label_scheme = schemes.of_all();
+  return notes;
+}
+
+}  // namespace vdbmap

@@ -1,0 +1,73 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#pragma once
+
+#include <cstddef>
+#include <filesystem>
+#include <functional>
+#include <limits>
+#include <optional>
+#include <vector>
+
+#include <Eigen/Geometry>
+
+#include "vdbmap/core/range_limits.h"
+#include "vdbmap/core/unreachable_points.h"
+#include "vdbmap/io/scans/scan_sequence.h"
+
+namespace vdbmap {
+
+/// A scan and where its points lie.
+struct MapInput {
+  ScanPlace scan;
+  /// Nothing: the points are in map coordinates.
+  std::optional<Eigen::Isometry3d> map_from_scan = std::nullopt;
+  /// The .label file of its points' classes, which count instead of its own labels.
+  std::optional<std::filesystem::path> labels = std::nullopt;
+};
+
+/// The pose of an input; identity for points in map coordinates.
+Eigen::Isometry3d pose_of(const MapInput& input);
+
+/// How inputs of a map are read.
+struct InputOptions {
+  std::optional<LabelScheme> label_scheme;  ///< whose numbers labels are, instead of what the files' formats say
+  ReadOptions read;                         ///< `is_in_sensor_frame` as the inputs have poses
+  std::optional<RangeLimits> range;         ///< of the points of inputs with poses, from their sensor
+  bool reads_ahead = true;                  ///< a thread of its own reads what comes next while points are taken
+  std::size_t most_points = std::numeric_limits<std::size_t>::max();  ///< of a piece of a large LAS file
+  std::function<void()> on_scan_done = [] {};                         ///< called after each scan
+};
+
+/// A file whose coordinates are not in metres.
+struct ForeignUnit {
+  std::filesystem::path file;
+  double metres_per_unit = 1.0;
+};
+
+/// What was noticed in the files.
+struct InputNotes {
+  std::size_t num_points = 0;              ///< in the map
+  std::size_t num_dropped = 0;             ///< points with a coordinate that is not finite
+  std::size_t num_out_of_range = 0;        ///< points that the range left out
+  std::vector<FileFinding> findings;       ///< what else was left out or is doubtful, in the order of the files
+  std::optional<int> epsg_of_files;        ///< of the files in map coordinates, where one says so
+  std::vector<ForeignUnit> foreign_units;  ///< taken as they are, as if in metres
+  LabelScheme label_scheme = LabelScheme::kUnknown;  ///< of the labels; unknown where one file does not say
+};
+
+/// Points of an input, number `index`: all of them, or a piece of a large file.
+struct InputPoints {
+  std::size_t index = 0;
+  const PointCloud& cloud;
+  bool is_whole = true;
+};
+
+/// Takes points and says which of them are not reached.
+using TakePoints = std::function<UnreachablePoints(const InputPoints& points)>;
+
+/// Reads inputs one after the other; at most two scans, or pieces of files, are in memory at once. Throws IoError
+/// naming the scan that cannot be read, of whose points half or more are not reached, or that has another EPSG code or
+/// label scheme than one before; and std::invalid_argument for no inputs and a range that leaves no point.
+InputNotes read_inputs(const std::vector<MapInput>& inputs, const InputOptions& options, const TakePoints& take);
+
+}  // namespace vdbmap

@@ -1,0 +1,52 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#pragma once
+
+#include <cstddef>
+#include <filesystem>
+#include <functional>
+#include <limits>
+#include <string>
+#include <vector>
+
+#include "vdbmap/io/map_from_files.h"
+#include "vdbmap/io/vdb/map_file.h"
+#include "vdbmap/store/city_manifest.h"
+
+namespace vdbmap {
+
+/// How a city is built.
+struct CityBuildOptions {
+  MapFromFilesOptions files;
+  SaveOptions save;
+  std::size_t memory_bytes = std::size_t{2} << 30;  ///< that the build may take, files of points not counted
+  std::size_t keep_epochs = std::numeric_limits<std::size_t>::max();  ///< the latest, 1 or more
+  std::function<void()> on_file_hashed = [] {};                       ///< called by any thread
+  std::function<void(std::size_t num_scans)> on_reading_begun = [](std::size_t) {};
+  std::function<void(std::size_t num_tiles)> on_tiles_begun = [](std::size_t) {};
+  std::function<void()> on_tile_done = [] {};  ///< called by any thread
+};
+
+/// What became of the inputs.
+struct CityBuilt {
+  CityManifest manifest;
+  InputNotes notes;                      ///< of the sources that were counted now
+  std::vector<CitySource> added;         ///< these
+  std::vector<std::string> not_counted;  ///< names of inputs that are in the city already, or twice among the inputs
+};
+
+/// Makes a city of the points of files. Its tiles are those of the map that build_map_from_files() makes of the inputs
+/// in the order of their names, byte for byte, for any memory, number of threads and order of the inputs. Without an
+/// anchor it is that of the first of them by name. A city that is there already is replaced where all of its sources
+/// are among the inputs. Throws as build_map_from_files() does, std::invalid_argument where a city of other sources
+/// is there, and IoError where the folder cannot be written or is another's; the folder is then as it was.
+CityBuilt build_city(const std::filesystem::path& folder, const std::vector<MapInput>& inputs,
+                     const CityBuildOptions& options);
+
+/// Adds the points of files to a city, whose anchor and levels it keeps: the tiles are then those of merge_maps() of
+/// the city and the map of the new sources. Sources that are counted already are left out; where that is all of them,
+/// nothing changes. The epoch of new points is that of the options or, without, the city's. Throws as build_city(), and
+/// std::invalid_argument for an epoch before the city's and for levels other than the city's.
+CityBuilt add_to_city(const std::filesystem::path& folder, const std::vector<MapInput>& inputs,
+                      const CityBuildOptions& options);
+
+}  // namespace vdbmap

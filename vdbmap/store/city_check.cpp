@@ -1,0 +1,88 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "vdbmap/store/city_check.h"
+
+#include <map>
+#include <utility>
+
+#include "vdbmap/core/error.h"
+#include "vdbmap/core/parallel.h"
+#include "vdbmap/store/city_window.h"
+
+namespace vdbmap {
+namespace {
+
+// A message without the path before it.
+std::string without_path(const std::string& message, const std::filesystem::path& path) {
+  const std::string front = path.string() + ": ";
+  return message.starts_with(front) ? message.substr(front.size()) : message;
+}
+
+// A tile as one manifest has it.
+struct NamedTile {
+  const City* city;
+  const CityTile* tile;
+};
+
+std::vector<std::string> broken_rules(const std::filesystem::path& path) {
+  std::vector<std::string> problems;
+  for (const RuleResult& rule : check_map_file(path)) {
+    if (!rule.passed) problems.push_back(rule.name + ": " + rule.detail);
+  }
+  return problems;
+}
+
+// OpenVDB reads nothing but files of ours that are whole: load_tile() has compared name, checksum and content.
+std::vector<std::string> problems_of(const NamedTile& named) {
+  const std::filesystem::path path = tile_path(named.city->folder, *named.tile);
+  try {
+    if (!load_tile(*named.city, *named.tile)) return {"is missing"};
+    if (std::filesystem::file_size(path) != named.tile->num_bytes) return {"has another size than the manifest says"};
+    return broken_rules(path);
+  } catch (const std::exception& error) {
+    return {without_path(error.what(), path)};
+  }
+}
+
+// The epochs whose manifests can be read.
+std::vector<City> open_epochs(const std::filesystem::path& folder, CityCheckResult& result) {
+  std::vector<City> cities = {open_city(folder)};
+  for (const std::int32_t epoch : list_epochs(folder)) {
+    try {
+      cities.push_back(open_city(folder.string() + "@" + std::to_string(epoch)));
+      if (cities.back().manifest.epoch != epoch) {
+        result.problems.push_back(
+            {epoch_path(folder, epoch), "is of epoch " + std::to_string(cities.back().manifest.epoch)});
+      }
+    } catch (const IoError& error) {
+      const std::filesystem::path file = epoch_path(folder, epoch);
+      result.problems.push_back({file, without_path(error.what(), file)});
+    }
+  }
+  return cities;
+}
+
+}  // namespace
+
+CityCheckResult check_city(const std::filesystem::path& folder, const std::function<void()>& on_tile_done) {
+  CityCheckResult result;
+  const std::vector<City> cities = open_epochs(folder, result);
+  std::map<std::filesystem::path, NamedTile> tiles;
+  for (const City& city : cities) {
+    for (const CityTile& tile : city.manifest.tiles)
+      tiles.try_emplace(tile_path(folder, tile), NamedTile{&city, &tile});
+  }
+  const std::vector<std::pair<std::filesystem::path, NamedTile>> list(tiles.begin(), tiles.end());
+  std::vector<std::vector<std::string>> problems(list.size());
+  parallel_for(list.size(), [&](std::size_t i) {
+    problems[i] = problems_of(list[i].second);
+    on_tile_done();
+  });
+  for (std::size_t i = 0; i < list.size(); ++i) {
+    for (const std::string& what : problems[i]) result.problems.push_back({list[i].first, what});
+  }
+  result.num_epochs = cities.size();
+  result.num_tiles = list.size();
+  return result;
+}
+
+}  // namespace vdbmap

@@ -1,0 +1,304 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "vdbmap/store/city_manifest.h"
+
+#include <algorithm>
+#include <stdexcept>
+#include <utility>
+
+#include <nlohmann/json.hpp>
+
+#include "vdbmap/core/error.h"
+
+namespace vdbmap {
+namespace {
+
+using Json = nlohmann::ordered_json;
+
+constexpr const char* kFormatName = "vdbmap city";
+constexpr std::size_t kTileHashSize = 20;
+constexpr std::size_t kSourceHashSize = 32;
+
+Json json_of(const Eigen::Vector3d& point) { return {point.x(), point.y(), point.z()}; }
+
+Json json_of(const CityTile& tile) {
+  return {{"x", tile.id.x},
+          {"y", tile.id.y},
+          {"hash", tile.hash},
+          {"bytes", tile.num_bytes},
+          {"points", tile.num_points},
+          {"voxels", tile.num_voxels},
+          {"min", json_of(tile.extent.min)},
+          {"max", json_of(tile.extent.max)}};
+}
+
+Json json_of(const CitySource& source) {
+  return {{"name", source.name}, {"hash", source.hash}, {"points", source.num_points}, {"epoch", source.epoch}};
+}
+
+// A name need not be UTF-8, JSON must be: what is not becomes U+FFFD, and the hash still tells sources apart.
+std::string dump(const Json& json) { return json.dump(-1, ' ', false, Json::error_handler_t::replace); }
+
+template <typename Value>
+std::string lines_of(const std::vector<Value>& values) {
+  std::string text = "[";
+  for (const Value& value : values) text += (&value == &values.front() ? "\n    " : ",\n    ") + dump(json_of(value));
+  return text + (values.empty() ? "]" : "\n  ]");
+}
+
+void add_line(std::string& text, const char* key, const std::string& value) {
+  text += std::string("  \"") + key + "\": " + value + ",\n";
+}
+
+// Reads values out of JSON; says where one is not as it should be.
+class Field {
+ public:
+  Field(const Json& json, std::string name, const std::filesystem::path& path)
+      : json_(json), name_(std::move(name)), path_(path) {}
+
+  [[noreturn]] void fail(const std::string& reason) const { throw IoError::malformed(path_, name_ + " " + reason); }
+
+  Field at(const std::string& key) const {
+    if (!json_.is_object()) fail("is no object");
+    const auto found = json_.find(key);
+    if (found == json_.end()) throw IoError::malformed(path_, inner(key) + " is missing");
+    return {*found, inner(key), path_};
+  }
+
+  std::vector<Field> elements() const {
+    if (!json_.is_array()) fail("is no list");
+    std::vector<Field> fields;
+    for (std::size_t i = 0; i < json_.size(); ++i) {
+      fields.emplace_back(json_[i], name_ + "[" + std::to_string(i) + "]", path_);
+    }
+    return fields;
+  }
+
+  bool is_null() const { return json_.is_null(); }
+
+  std::string text() const {
+    if (!json_.is_string()) fail("is no text");
+    return json_.get<std::string>();
+  }
+
+  bool truth() const {
+    if (!json_.is_boolean()) fail("is neither true nor false");
+    return json_.get<bool>();
+  }
+
+  double number() const {
+    if (!json_.is_number()) fail("is no number");
+    return json_.get<double>();
+  }
+
+  std::uint64_t count() const {
+    if (!json_.is_number_unsigned()) fail("is no whole number from 0 on");
+    return json_.get<std::uint64_t>();
+  }
+
+  std::int32_t integer() const {
+    const std::int64_t value = json_.is_number_integer() ? json_.get<std::int64_t>() : 0;
+    if (!json_.is_number_integer() || value != static_cast<std::int32_t>(value)) fail("is no whole number of 32 bits");
+    return static_cast<std::int32_t>(value);
+  }
+
+  Eigen::Vector3d point() const {
+    const std::vector<Field> axes = elements();
+    if (axes.size() != 3) fail("has " + std::to_string(axes.size()) + " coordinates, expected 3");
+    return {axes[0].number(), axes[1].number(), axes[2].number()};
+  }
+
+  // A part of names of files: nothing but digits may come out of it.
+  std::string hash(std::size_t size) const {
+    const std::string digits = text();
+    const bool is_hash = digits.size() == size && digits.find_first_not_of("0123456789abcdef") == std::string::npos;
+    if (!is_hash) fail("is no hash of " + std::to_string(size) + " hexadecimal digits");
+    return digits;
+  }
+
+ private:
+  std::string inner(const std::string& key) const { return name_.empty() ? key : name_ + "." + key; }
+
+  const Json& json_;
+  std::string name_;
+  const std::filesystem::path& path_;
+};
+
+MapFrame frame_of(const Field& field) {
+  MapFrame frame{field.at("anchor").point(), std::nullopt};
+  if (!is_anchor(frame.anchor)) field.at("anchor").fail("is no point of whole multiples of 64 m");
+  if (!field.at("epsg").is_null()) frame.epsg = field.at("epsg").integer();
+  return frame;
+}
+
+std::vector<double> voxel_sizes_of(const Field& field) {
+  std::vector<double> sizes;
+  for (const Field& element : field.elements()) {
+    sizes.push_back(element.number());
+    try {
+      voxels_per_metre(sizes.back());
+      if (sizes.size() > 1) level_factor(sizes[sizes.size() - 2], sizes.back());
+    } catch (const std::invalid_argument& error) {
+      element.fail(std::string("cannot be: ") + error.what());
+    }
+  }
+  if (sizes.empty()) field.fail("is empty");
+  return sizes;
+}
+
+std::vector<std::string> channels_of(const Field& field) {
+  std::vector<std::string> given;
+  for (const Field& element : field.elements()) given.push_back(element.text());
+  std::vector<std::string> known;
+  for_each_channel([&](const char* name, auto /*channel*/) {
+    if (std::ranges::find(given, name) != given.end()) known.emplace_back(name);
+  });
+  if (given != known) field.fail("names something else than channels in their order");
+  return known;
+}
+
+CityLayout layout_of(const Field& field) {
+  CityLayout layout{frame_of(field), voxel_sizes_of(field.at("voxel_sizes")), field.at("has_color").truth(),
+                    channels_of(field.at("channels"))};
+  const std::optional<LabelScheme> scheme = label_scheme_of(field.at("label_scheme").text());
+  if (!scheme) field.at("label_scheme").fail("is not known");
+  layout.label_scheme = *scheme;
+  layout.density = static_cast<float>(field.at("density").number());
+  if (!(layout.density > 0)) field.at("density").fail("is not above 0");
+  return layout;
+}
+
+CityTile tile_of(const Field& field, std::size_t num_levels) {
+  CityTile tile;
+  tile.id = {field.at("x").integer(), field.at("y").integer()};
+  tile.hash = field.at("hash").hash(kTileHashSize);
+  tile.num_bytes = field.at("bytes").count();
+  tile.num_points = field.at("points").count();
+  for (const Field& count : field.at("voxels").elements()) tile.num_voxels.push_back(count.count());
+  if (tile.num_voxels.size() != num_levels || std::ranges::count(tile.num_voxels, 0U) > 0) {
+    field.at("voxels").fail("is no list of " + std::to_string(num_levels) + " numbers of voxels above 0");
+  }
+  tile.extent = {field.at("min").point(), field.at("max").point()};
+  return tile;
+}
+
+CitySource source_of(const Field& field) {
+  return {field.at("name").text(), field.at("hash").hash(kSourceHashSize), field.at("points").count(),
+          field.at("epoch").integer()};
+}
+
+void check_format(const Field& root) {
+  if (root.at("format").text() != kFormatName) root.at("format").fail("is not '" + std::string(kFormatName) + "'");
+  const std::int32_t version = root.at("version").integer();
+  if (version == kCityFormat) return;
+  root.at("version").fail("is " + std::to_string(version) + (version > kCityFormat ? ", newer than" : ", expected") +
+                          " the " + std::to_string(kCityFormat) + " that this program knows");
+}
+
+}  // namespace
+
+bool CityTile::operator==(const CityTile& other) const {
+  return id == other.id && hash == other.hash && num_bytes == other.num_bytes && num_points == other.num_points &&
+         num_voxels == other.num_voxels && extent.min == other.extent.min && extent.max == other.extent.max;
+}
+
+std::string text_of(const CityManifest& manifest) {
+  const CityLayout& layout = manifest.layout;
+  std::string text = "{\n";
+  add_line(text, "format", dump(kFormatName));
+  add_line(text, "version", dump(kCityFormat));
+  add_line(text, "epoch", dump(manifest.epoch));
+  add_line(text, "anchor", dump(json_of(layout.frame.anchor)));
+  add_line(text, "epsg", dump(layout.frame.epsg ? Json(*layout.frame.epsg) : Json(nullptr)));
+  add_line(text, "tile_size", dump(kTileSize));
+  add_line(text, "voxel_sizes", dump(layout.voxel_sizes));
+  add_line(text, "has_color", dump(layout.has_color));
+  add_line(text, "channels", dump(Json(layout.channels)));
+  add_line(text, "label_scheme", dump(std::string(vdbmap::text_of(layout.label_scheme))));
+  add_line(text, "density", dump(layout.density));
+  add_line(text, "tiles", lines_of(manifest.tiles));
+  return text + "  \"sources\": " + lines_of(manifest.sources) + "\n}\n";
+}
+
+CityManifest parse_city_manifest(std::string_view text, const std::filesystem::path& path) {
+  const Json json = Json::parse(text, nullptr, /*allow_exceptions=*/false);
+  if (!json.is_object()) throw IoError::malformed(path, "is damaged: it is no JSON object");
+  const Field root(json, "", path);
+  check_format(root);
+  CityManifest manifest;
+  manifest.epoch = root.at("epoch").integer();
+  if (manifest.epoch < 0) root.at("epoch").fail("is below 0");
+  if (root.at("tile_size").number() != kTileSize) root.at("tile_size").fail("is not 64");
+  manifest.layout = layout_of(root);
+  for (const Field& field : root.at("tiles").elements()) {
+    manifest.tiles.push_back(tile_of(field, manifest.layout.voxel_sizes.size()));
+    const std::size_t count = manifest.tiles.size();
+    if (count > 1 && !(manifest.tiles[count - 2].id < manifest.tiles[count - 1].id)) field.fail("is out of order");
+  }
+  for (const Field& field : root.at("sources").elements()) manifest.sources.push_back(source_of(field));
+  return manifest;
+}
+
+std::vector<double> exact_voxel_sizes(std::vector<double> voxel_sizes) {
+  for (double& size : voxel_sizes) size = kTileSize / voxels_per_tile(size);
+  return voxel_sizes;
+}
+
+std::vector<std::string> channel_names(const VoxelMap& map) {
+  std::vector<std::string> names;
+  for_each_channel([&](const char* name, auto channel) {
+    if (!(map.finest().channels().*channel).empty()) names.emplace_back(name);
+  });
+  return names;
+}
+
+CityLayout layout_of(const VoxelMap& map, float density) {
+  CityLayout layout;
+  layout.frame = map.frame;
+  for (const VoxelLevel& level : map.levels) layout.voxel_sizes.push_back(level.voxel_size());
+  layout.voxel_sizes = exact_voxel_sizes(layout.voxel_sizes);
+  layout.has_color = map.has_color;
+  layout.channels = channel_names(map);
+  layout.label_scheme = map.label_scheme;
+  layout.density = density;
+  return layout;
+}
+
+CityTile describe_tile(const TileId& id, const VoxelMap& tile) {
+  CityTile described;
+  described.id = id;
+  described.num_points = num_points(tile.finest());
+  for (const VoxelLevel& level : tile.levels) described.num_voxels.push_back(level.size());
+  if (const std::optional<Extent> box = extent(tile)) described.extent = *box;
+  return described;
+}
+
+const CityTile* find_tile(const CityManifest& manifest, const TileId& id) {
+  const auto found = std::ranges::lower_bound(manifest.tiles, id, {}, &CityTile::id);
+  return found == manifest.tiles.end() || found->id != id ? nullptr : &*found;
+}
+
+std::optional<Extent> extent(const CityManifest& manifest) {
+  if (manifest.tiles.empty()) return std::nullopt;
+  Extent box = manifest.tiles.front().extent;
+  for (const CityTile& tile : manifest.tiles) {
+    box.min = box.min.cwiseMin(tile.extent.min);
+    box.max = box.max.cwiseMax(tile.extent.max);
+  }
+  return box;
+}
+
+std::uint64_t num_points(const CityManifest& manifest) {
+  std::uint64_t count = 0;
+  for (const CityTile& tile : manifest.tiles) count += tile.num_points;
+  return count;
+}
+
+std::vector<std::uint64_t> num_voxels(const CityManifest& manifest) {
+  std::vector<std::uint64_t> counts(manifest.layout.voxel_sizes.size(), 0);
+  for (const CityTile& tile : manifest.tiles) {
+    for (std::size_t i = 0; i < counts.size(); ++i) counts[i] += tile.num_voxels[i];
+  }
+  return counts;
+}
+
+}  // namespace vdbmap

@@ -1,0 +1,92 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#pragma once
+
+#include <cstdint>
+#include <filesystem>
+#include <optional>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "vdbmap/core/tile_id.h"
+#include "vdbmap/core/voxel_map.h"
+
+namespace vdbmap {
+
+/// What every tile of a city is like.
+struct CityLayout {
+  MapFrame frame;
+  std::vector<double> voxel_sizes;  ///< [m] finest first
+  bool has_color = false;
+  std::vector<std::string> channels;  ///< names of for_each_channel() that the voxels have, in its order
+  LabelScheme label_scheme = LabelScheme::kUnknown;
+  float density = 0;  ///< [1/m] of the fog that renderers see
+
+  bool operator==(const CityLayout&) const = default;
+};
+
+/// A file of a city. What is counted here is what the file holds: `check` compares them.
+struct CityTile {
+  TileId id;
+  std::string hash;                       ///< the checksum of the file, 20 hexadecimal digits: a part of its name
+  std::uint64_t num_bytes = 0;            ///< of the file
+  std::uint64_t num_points = 0;           ///< counted in its voxels
+  std::vector<std::uint64_t> num_voxels;  ///< a level
+  Extent extent{};                        ///< of its voxels [m, original system]
+
+  bool operator==(const CityTile& other) const;
+};
+
+/// What was counted: a file of points, or a scan with its pose.
+struct CitySource {
+  std::string name;  ///< of the file, without its folder
+  std::string hash;  ///< of its content, its pose and what else decides about its points: 32 hexadecimal digits
+  std::uint64_t num_points = 0;
+  std::int32_t epoch = 0;  ///< in which it was added
+
+  bool operator==(const CitySource&) const = default;
+};
+
+/// What a city is in one epoch.
+struct CityManifest {
+  std::int32_t epoch = 0;  ///< number of the latest survey in it; 0 where none was given
+  CityLayout layout;
+  std::vector<CityTile> tiles;      ///< sorted, each with a voxel at least
+  std::vector<CitySource> sources;  ///< sorted by epoch, name and hash
+
+  bool operator==(const CityManifest&) const = default;
+};
+
+/// Version of the manifests that we write; of newer ones nothing is known.
+inline constexpr std::int32_t kCityFormat = 1;
+
+/// The manifest as JSON, a line a tile and a source. Equal manifests give equal texts.
+std::string text_of(const CityManifest& manifest);
+
+/// Reads what text_of() wrote. Throws IoError (malformed), naming `path` and the place, for anything else: a text that
+/// was cut, numbers that cannot be, a newer version.
+CityManifest parse_city_manifest(std::string_view text, const std::filesystem::path& path);
+
+/// The voxel sizes that some given to 1e-9 mean: a tile is a whole number of voxels.
+std::vector<double> exact_voxel_sizes(std::vector<double> voxel_sizes);
+
+/// The layout of a map.
+CityLayout layout_of(const VoxelMap& map, float density);
+
+/// The channels of a map that has voxels, by name.
+std::vector<std::string> channel_names(const VoxelMap& map);
+
+/// What is counted of a tile, apart from its file.
+CityTile describe_tile(const TileId& id, const VoxelMap& tile);
+
+/// The tile of that id, or nullptr.
+const CityTile* find_tile(const CityManifest& manifest, const TileId& id);
+
+/// The box around all tiles; nothing without one.
+std::optional<Extent> extent(const CityManifest& manifest);
+
+/// Points, and voxels of each level, of all tiles.
+std::uint64_t num_points(const CityManifest& manifest);
+std::vector<std::uint64_t> num_voxels(const CityManifest& manifest);
+
+}  // namespace vdbmap

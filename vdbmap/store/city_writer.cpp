@@ -1,0 +1,163 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "vdbmap/store/city_writer.h"
+
+#include <algorithm>
+#include <array>
+#include <cerrno>
+#include <set>
+#include <string>
+#include <string_view>
+#include <system_error>
+#include <utility>
+#include <vector>
+
+#include "vdbmap/core/error.h"
+#include "vdbmap/io/file/atomic_file.h"
+#include "vdbmap/io/vdb/map_file.h"
+#include "vdbmap/io/vdb/vdb_checksum.h"
+
+namespace vdbmap {
+namespace {
+
+using Path = std::filesystem::path;
+
+// Names in the folder of a city; those of unfinished files go on with a dot and letters.
+constexpr std::array<std::string_view, 5> kNames = {"map.json", "epochs", "tiles", "lock", "sums"};
+
+bool is_ours(const std::string& name) {
+  return std::ranges::any_of(kNames, [&](std::string_view ours) {
+    return name.starts_with(ours) && (name.size() == ours.size() || name[ours.size()] == '.');
+  });
+}
+
+std::vector<Path> list_folder_entries(const Path& folder) {
+  std::vector<Path> entries;
+  std::error_code error;
+  for (std::filesystem::directory_iterator entry(folder, error), end; !error && entry != end; entry.increment(error)) {
+    entries.push_back(entry->path());
+  }
+  if (error && error != std::errc::no_such_file_or_directory)
+    throw IoError::system(folder, "cannot list", error.value());
+  return entries;
+}
+
+void create_folder(const Path& folder) {
+  std::error_code error;
+  std::filesystem::create_directory(folder, error);
+  if (error) throw IoError::system(folder, "cannot create", error.value());
+}
+
+bool create_city_folder(const Path& folder) {
+  std::error_code missing;
+  if (std::filesystem::is_directory(folder, missing)) return false;
+  create_folder(folder);
+  return true;
+}
+
+// A folder of something else, somebody's home for example, gets no city.
+void check_content(const Path& folder) {
+  for (const Path& entry : list_folder_entries(folder)) {
+    if (is_ours(entry.filename().string())) continue;
+    throw IoError::malformed(folder, "is no city: it holds '" + entry.filename().string() + "'");
+  }
+}
+
+void remove_with_content(const Path& path) {
+  std::error_code error;
+  std::filesystem::remove_all(path, error);
+  if (error) throw IoError::system(path, "cannot remove", error.value());
+}
+
+// "3_-12" of "3_-12.HASH.vdb" and of what is on its way to be one; empty for names of others.
+bool may_be_tile(const std::string& name) {
+  const std::string_view front = std::string_view(name).substr(0, name.find('.'));
+  return front.size() >= 3 && front.find('_') != std::string_view::npos &&
+         front.find_first_not_of("-_0123456789") == std::string_view::npos;
+}
+
+std::set<std::string> named_tiles(const Path& folder) {
+  std::set<std::string> names;
+  for (const auto& [epoch, manifest] : read_epochs(folder)) {
+    for (const CityTile& tile : manifest.tiles) names.insert(tile_path(folder, tile).filename().string());
+  }
+  return names;
+}
+
+// Keeps a manifest as that of its epoch.
+void keep_manifest(const Path& folder, const CityManifest& manifest) {
+  create_folder(epochs_path(folder));
+  write_file(epoch_path(folder, manifest.epoch), text_of(manifest));
+  sync_folder(epochs_path(folder));
+}
+
+}  // namespace
+
+CityWriter::CityWriter(Path folder)
+    : folder_(std::move(folder)), is_new_(create_city_folder(folder_)), lock_(std::nullopt) {
+  if (!is_new_) check_content(folder_);
+  lock_.emplace(folder_);
+  const std::map<std::int32_t, CityManifest> epochs = read_epochs(folder_);
+  num_epochs_ = epochs.size();
+  std::error_code missing;
+  if (std::filesystem::exists(manifest_path(folder_), missing)) current_ = open_city(folder_);
+  sweep();
+  create_folder(tiles_path(folder_));
+}
+
+CityWriter::~CityWriter() {
+  if (is_published_) return;
+  try {
+    if (is_new_) {
+      remove_with_content(folder_);
+    } else {
+      sweep();
+    }
+  } catch (const std::exception&) {  // the next writer sweeps
+  }
+}
+
+CityTile CityWriter::save_tile(const TileId& id, const VoxelMap& tile, float density) const {
+  const Path unnamed = tiles_path(folder_) / (tile_name(id) + ".vdb");
+  save_map(unnamed, tile, {density});
+  CityTile described = describe_tile(id, tile);
+  described.hash = *stated_checksum(unnamed);
+  described.num_bytes = std::filesystem::file_size(unnamed);
+  // A file of that name is the same already, or was damaged.
+  const Path path = tile_path(folder_, described);
+  if (::rename(unnamed.c_str(), path.c_str()) != 0) throw IoError::system(path, "cannot create", errno);
+  return described;
+}
+
+void CityWriter::publish(const CityManifest& manifest, std::size_t keep_epochs) {
+  sync_folder(tiles_path(folder_));
+  if (current_ && current_->manifest.epoch != manifest.epoch) keep_manifest(folder_, current_->manifest);
+  write_file(manifest_path(folder_), text_of(manifest));
+  is_published_ = true;
+  sync_folder(folder_);
+  std::vector<std::int32_t> epochs;
+  for (const auto& [epoch, kept] : read_epochs(folder_)) epochs.push_back(epoch);
+  for (std::size_t i = 0; i + std::max<std::size_t>(keep_epochs, 1) < epochs.size(); ++i) {
+    remove_with_content(epoch_path(folder_, epochs[i]));
+  }
+  num_epochs_ = std::min(epochs.size(), std::max<std::size_t>(keep_epochs, 1));
+  current_ = City{folder_, std::nullopt, manifest};
+  sweep();
+}
+
+void CityWriter::sweep() const {
+  const std::set<std::string> named = named_tiles(folder_);
+  for (const Path& file : list_folder_entries(tiles_path(folder_))) {
+    const std::string name = file.filename().string();
+    if (may_be_tile(name) && !named.contains(name)) remove_with_content(file);
+  }
+  for (const Path& folder : {folder_, epochs_path(folder_)}) {
+    for (const Path& file : list_folder_entries(folder)) {
+      const std::string name = file.filename().string();
+      const bool is_unfinished = name.starts_with("map.json.") || name.starts_with("sums.") ||
+                                 (folder != folder_ && name.find(".json.") != std::string::npos);
+      if (is_unfinished) remove_with_content(file);
+    }
+  }
+}
+
+}  // namespace vdbmap
