@@ -9,8 +9,7 @@
 #include <numeric>
 #include <tuple>
 
-#include <Eigen/SVD>
-
+#include "vdbmap/core/nearest_rotation.h"
 #include "vdbmap/core/option_check.h"
 #include "vdbmap/core/parallel.h"
 
@@ -176,10 +175,8 @@ Eigen::Isometry3d fit_pose(const MatchedPoints& points, std::span<const std::siz
     products += kNormalLength * kNormalLength * points.target.normals.col(i).cast<double>() *
                 points.source.normals.col(i).cast<double>().transpose();
   }
-  const Eigen::JacobiSVD<Eigen::Matrix3d> svd(products, Eigen::ComputeFullU | Eigen::ComputeFullV);
-  Eigen::Vector3d signs(1, 1, (svd.matrixU() * svd.matrixV().transpose()).determinant() < 0 ? -1 : 1);
   Eigen::Isometry3d target_from_source = Eigen::Isometry3d::Identity();
-  target_from_source.linear() = svd.matrixU() * signs.asDiagonal() * svd.matrixV().transpose();
+  target_from_source.linear() = nearest_rotation(products);
   target_from_source.translation() = target_mean - target_from_source.linear() * source_mean;
   return target_from_source;
 }

@@ -5,7 +5,7 @@
 #include <string>
 #include <vector>
 
-#include <Eigen/SVD>
+#include "vdbmap/core/nearest_rotation.h"
 
 namespace vdbmap::registration {
 namespace {
@@ -26,12 +26,8 @@ Eigen::Isometry3d rigid_fit(const std::vector<Eigen::Vector3d>& source, const st
   for (std::size_t i = 0; i < source.size(); ++i) {
     covariance += (target[i] - target_mean) * (source[i] - source_mean).transpose();
   }
-  const Eigen::JacobiSVD<Eigen::Matrix3d> svd(covariance, Eigen::ComputeFullU | Eigen::ComputeFullV);
-  const double handedness = svd.matrixU().determinant() * svd.matrixV().determinant() < 0 ? -1 : 1;
-
   Eigen::Isometry3d target_from_source = Eigen::Isometry3d::Identity();
-  target_from_source.linear() =
-      svd.matrixU() * Eigen::Vector3d(1, 1, handedness).asDiagonal() * svd.matrixV().transpose();
+  target_from_source.linear() = nearest_rotation(covariance);
   target_from_source.translation() = target_mean - target_from_source.linear() * source_mean;
   return target_from_source;
 }

@@ -20,8 +20,8 @@ constexpr double kGuessRotation = std::numbers::pi / 180;  // [rad]
 
 Eigen::Isometry3d guess_near(const Eigen::Isometry3d& truth, Random& random) {
   Eigen::Isometry3d guess = truth;
-  guess.rotate(Eigen::AngleAxisd(kGuessRotation, random.direction()));
-  guess.translation() += kGuessTranslation * random.direction();
+  guess.rotate(Eigen::AngleAxisd(kGuessRotation, random_direction(random)));
+  guess.translation() += kGuessTranslation * random_direction(random);
   return guess;
 }
 

@@ -3,8 +3,10 @@
 
 #include <algorithm>
 #include <csignal>
+#include <cstdint>
 #include <cstdlib>
 #include <ctime>
+#include <iostream>
 #include <memory>
 #include <string>
 #include <vector>
@@ -64,6 +66,18 @@ TEST(ChildProcess, LargerFilesMayTakeMore) {
   EXPECT_EQ(ChildLimits::for_file(file).memory_bytes, (std::uint64_t{8} << 30) + 640'000'000U);
 }
 
+// What OpenVDB has to say beside the answer.
+TEST(ChildProcess, TheStreamOfErrorsIsSilent) {
+  testing::internal::CaptureStderr();
+  run_in_child("a.vdb",
+               [] {
+                 std::cerr << "WARNING: of a library" << std::endl;
+                 return ExitCode::kDone;
+               },
+               {});
+  EXPECT_EQ(testing::internal::GetCapturedStderr(), "");
+}
+
 // A small file as other programs write them: a sphere of fog and some numbers.
 std::string foreign_file(const std::filesystem::path& path) {
   openvdb::initialize();
@@ -79,26 +93,94 @@ std::string foreign_file(const std::filesystem::path& path) {
   return test::read_raw(path);
 }
 
-TEST(ForeignVdb, WhateverIsDamagedTheAnswerIsOneLineAndAnExitCode) {
-  const test::TemporaryFolder folder;
-  const std::filesystem::path path = folder.path() / "foreign.vdb";
-  const std::string whole = foreign_file(path);
+// A file of one full leaf, compressed by zlib.
+struct ZippedFile {
+  std::string bytes;
+  std::size_t size_of_leaf;  // where it stands, of 8 bytes
+};
+
+ZippedFile zipped_file(const std::filesystem::path& path) {
+  openvdb::initialize();
+  const auto density = openvdb::FloatGrid::create(0);
+  density->setName("density");
+  for (int i = 0; i < 512; ++i) density->tree().setValue({i / 64, i / 8 % 8, i % 8}, 0.1F * static_cast<float>(i % 5));
+  openvdb::io::File file(path.string());
+  file.setCompression(openvdb::io::COMPRESS_ZIP | openvdb::io::COMPRESS_ACTIVE_MASK);
+  file.write({density});
+  file.close();
+  const std::string bytes = test::read_raw(path);
+  return {bytes, bytes.rfind("\x78\x9c") - 8};  // before zlib's first bytes
+}
+
+class ForeignVdb : public testing::Test {
+ protected:
+  // The exit code of a command for a file of these bytes; where it is 3, there is one line that names the file.
+  int exit_code(const char* command, const std::string& bytes) const {
+    test::write_raw(path_, bytes);
+    const auto run = test::run_command(VDBMAP_COMMAND, {command, path_.string()});
+    if (run.exit_code == 3) {
+      EXPECT_NE(run.err.find("foreign.vdb"), std::string::npos) << run.err;
+      EXPECT_EQ(std::count(run.err.begin(), run.err.end(), '\n'), 1) << run.err;
+    }
+    return run.exit_code;
+  }
+
+  // Whether `info` and `check` both refuse it.
+  void expect_refusal(const std::string& bytes) const {
+    for (const char* command : {"info", "check"}) EXPECT_EQ(exit_code(command, bytes), 3) << command;
+  }
+
+  test::TemporaryFolder folder_;
+  std::filesystem::path path_ = folder_.path() / "foreign.vdb";
+};
+
+TEST_F(ForeignVdb, WhateverIsDamagedTheAnswerIsOneLineAndAnExitCode) {
+  const std::string whole = foreign_file(path_);
   int num_refused = 0;
   for (std::size_t i = 17; i < whole.size(); i += whole.size() / 24) {
     std::string damaged = whole;
     damaged[i] = static_cast<char>(~damaged[i]);
-    test::write_raw(path, damaged);
     for (const char* command : {"info", "check"}) {
-      const auto run = test::run_command(VDBMAP_COMMAND, {command, path.string()});
-      EXPECT_TRUE(run.exit_code == 0 || run.exit_code == 1 || run.exit_code == 3)
-          << command << " " << i << " " << run.err;
-      if (run.exit_code != 3) continue;
-      ++num_refused;
-      EXPECT_NE(run.err.find("foreign.vdb"), std::string::npos) << i;
-      EXPECT_EQ(std::count(run.err.begin(), run.err.end(), '\n'), 1) << run.err;
+      const int code = exit_code(command, damaged);
+      EXPECT_TRUE(code == 0 || code == 1 || code == 3) << command << " " << i << " " << code;
+      num_refused += code == 3 ? 1 : 0;
     }
   }
   EXPECT_GT(num_refused, 5);
+}
+
+// What follows was found by tests/fuzz. The size of a block that was not worth compressing is stored as a negative
+// number: OpenVDB reads so many bytes over the memory of the block, and looks at the size that it must have only then.
+TEST_F(ForeignVdb, ABlockLargerThanItsMemoryIsRefused) {
+  if (test::kIsSanitized) return;  // the sanitizer ends the child, in its own words
+  const ZippedFile zipped = zipped_file(path_);
+  ASSERT_LT(zipped.size_of_leaf, zipped.bytes.size());
+  for (const std::int64_t size : {5'000, 5'000'000}) {
+    std::string damaged = zipped.bytes;
+    damaged.replace(zipped.size_of_leaf, sizeof(size), test::raw(-size));
+    expect_refusal(damaged + std::string(static_cast<std::size_t>(size), '\x7f'));
+  }
+}
+
+// OpenVDB takes as much memory as the block is said to have bytes, before it sees that the file ends.
+TEST_F(ForeignVdb, ABlockLargerThanAllMemoryIsRefused) {
+  if (test::kIsSanitized) return;
+  ZippedFile zipped = zipped_file(path_);
+  ASSERT_LT(zipped.size_of_leaf, zipped.bytes.size());
+  expect_refusal(zipped.bytes.replace(zipped.size_of_leaf, 8, test::raw(std::int64_t{1} << 40)));
+}
+
+// OpenVDB warns of trees as those of its first versions, which had several buffers.
+TEST_F(ForeignVdb, AWarningOfOpenVdbIsNoSecondLine) {
+  std::string damaged = foreign_file(path_);
+  const std::size_t num_buffers =
+      damaged.find(test::raw(1, 0.0F, 0U));  // before the background and the number of tiles
+  ASSERT_NE(num_buffers, std::string::npos);
+  damaged[num_buffers] = 2;
+  test::write_raw(path_, damaged);
+  const auto run = test::run_command(VDBMAP_COMMAND, {"info", path_.string()});
+  EXPECT_LE(std::count(run.err.begin(), run.err.end(), '\n'), 1) << run.err;
+  EXPECT_EQ(run.err.find("WARNING"), std::string::npos) << run.err;
 }
 
 }  // namespace

@@ -6,6 +6,7 @@
 #include <cstdio>
 #include <cstdlib>
 #include <cstring>
+#include <iostream>
 #include <new>
 #include <string>
 #include <system_error>
@@ -59,6 +60,7 @@ bool limit_memory(std::uint64_t bytes) {
   limit(RLIMIT_CPU, limits.processor_seconds);
   ::alarm(static_cast<unsigned>(kSecondsOfWaiting + 4 * limits.processor_seconds));  // one that waits uses no processor
   if (limit_memory(limits.memory_bytes)) std::set_new_handler(end_for_lack_of_memory);
+  std::cerr.rdbuf(nullptr);  // OpenVDB warns there; what we have to say goes past it
   const ExitCode code = report_errors(body);
   std::fflush(nullptr);
   std::_Exit(static_cast<int>(code));

@@ -3,8 +3,7 @@
 
 #include <algorithm>
 
-#include <Eigen/SVD>
-
+#include "vdbmap/core/nearest_rotation.h"
 #include "vdbmap/core/voxel.h"
 
 namespace vdbmap::simulator {
@@ -49,10 +48,8 @@ Eigen::Isometry3d fit(const std::vector<Sighting>& sightings) {
   for (const Sighting& sighting : sightings) {
     covariance += (sighting.measured - to) * (sighting.point - from).transpose();
   }
-  const Eigen::JacobiSVD<Eigen::Matrix3d> svd(covariance, Eigen::ComputeFullU | Eigen::ComputeFullV);
-  const double mirror = (svd.matrixU() * svd.matrixV().transpose()).determinant() < 0 ? -1 : 1;
   Eigen::Isometry3d motion = Eigen::Isometry3d::Identity();
-  motion.linear() = svd.matrixU() * Eigen::Vector3d(1, 1, mirror).asDiagonal() * svd.matrixV().transpose();
+  motion.linear() = nearest_rotation(covariance);
   motion.translation() = to - motion.linear() * from;
   return motion;
 }

@@ -10,25 +10,22 @@
 #include "vdbmap/core/label_votes.h"
 #include "vdbmap/core/normals.h"
 #include "vdbmap/core/parallel.h"
+#include "vdbmap/core/point_sums.h"
 #include "vdbmap/core/voxel_assembly.h"
 
 namespace vdbmap {
 namespace {
 
-// What a parent gathers from its children; positions count from its own centre, so that nothing cancels.
+// What a parent gathers from its children.
 struct ParentSums {
-  double count = 0;
-  Eigen::Vector3d position = Eigen::Vector3d::Zero();  // [m]
-  Eigen::Matrix3d product = Eigen::Matrix3d::Zero();   // [m^2]
+  PointSums points;  // about its centre
   Eigen::Vector3d color = Eigen::Vector3d::Zero();
   double intensity = 0;
   std::int32_t first_epoch = std::numeric_limits<std::int32_t>::max();
   std::int32_t last_epoch = std::numeric_limits<std::int32_t>::min();
 
   void add(const ParentSums& other) {
-    count += other.count;
-    position += other.position;
-    product += other.product;
+    points.add(other.points);
     color += other.color;
     intensity += other.intensity;
     first_epoch = std::min(first_epoch, other.first_epoch);
@@ -56,14 +53,12 @@ ParentSums sums_of_child(const VoxelLevel& fine, std::size_t number, const Voxel
                          const Eigen::Vector3d& parent_center) {
   const VoxelRecord& record = fine.records()[number];
   const VoxelChannels& channels = fine.channels();
-  const Eigen::Vector3d mean = mean_of(record, child, fine.voxel_size()) - parent_center;
+  const double count = record.count;
 
   ParentSums sums;
-  sums.count = record.count;
-  sums.position = sums.count * mean;
-  sums.product = covariance_of(record) * (sums.count - 1) + sums.count * mean * mean.transpose();
-  sums.color = sums.count * color_of(record);
-  if (!channels.intensities.empty()) sums.intensity = sums.count * channels.intensities[number];
+  sums.points = sums_of(record, mean_of(record, child, fine.voxel_size()) - parent_center);
+  sums.color = count * color_of(record);
+  if (!channels.intensities.empty()) sums.intensity = count * channels.intensities[number];
   if (!channels.first_epochs.empty()) sums.first_epoch = channels.first_epochs[number];
   if (!channels.last_epochs.empty()) sums.last_epoch = channels.last_epochs[number];
   return sums;
@@ -137,15 +132,12 @@ ParentSums sums_of_parts(const VoxelLevel& fine, std::span<const PartOfParent> p
 }
 
 VoxelRecord record_of(const ParentSums& sums, const VoxelIndex& parent, double voxel_size) {
-  const Eigen::Vector3d mean = sums.position / sums.count;
-  Moments moments;
-  moments.count = static_cast<std::int64_t>(sums.count);
-  moments.mean = center_of_voxel(parent, voxel_size) + mean;
-  moments.scatter = sums.product - sums.count * mean * mean.transpose();
+  Moments moments = moments_of(sums.points);
+  moments.mean += center_of_voxel(parent, voxel_size);
 
   VoxelRecord record;
   set_moments(record, moments, parent, voxel_size);
-  set_color(record, sums.color / sums.count);
+  set_color(record, sums.color / sums.points.count());
   return record;
 }
 
@@ -153,8 +145,8 @@ ParentVoxel make_parent(const VoxelLevel& fine, std::span<const PartOfParent> pa
                         double voxel_size) {
   const VoxelIndex parent = voxel_of_key(parts.front().parent);
   const ParentSums sums = sums_of_parts(fine, parts, parent, factor);
-  return {record_of(sums, parent, voxel_size), static_cast<float>(sums.intensity / sums.count), sums.first_epoch,
-          sums.last_epoch};
+  return {record_of(sums, parent, voxel_size), static_cast<float>(sums.intensity / sums.points.count()),
+          sums.first_epoch, sums.last_epoch};
 }
 
 // Adds parents to the level above, in the order of their keys.

@@ -83,29 +83,23 @@ void LeafNeighborhood::sum_cells(const VoxelLeaf& neighbor, const VoxelIndex& st
         const int z = std::countr_zero(cells);
         const std::size_t record = first_of_layer + std::popcount(layer & bits_below(8 * y + z));
         const VoxelIndex from_origin(x + 8 * step.x(), y + 8 * step.y(), z + 8 * step.z());
-        sums_[number++] = sums_of(level_.records()[record], from_origin);
+        sums_[number++] = sums_about_center(level_.records()[record], from_origin);
       }
     }
     first_of_layer += std::popcount(layer);
   }
 }
 
-NeighborhoodSums LeafNeighborhood::sums_of(const VoxelRecord& record, const VoxelIndex& from_origin) const {
+PointSums LeafNeighborhood::sums_about_center(const VoxelRecord& record, const VoxelIndex& from_origin) const {
   const double size = level_.voxel_size();
-  const Eigen::Vector3d mean = mean_of(record, from_origin, size) - corner_of_voxel(VoxelIndex(4, 4, 4), size);
-  const double n = record.count;
-  const Eigen::Vector3d sum = n * mean;
-  const auto& c = record.covariance;
-  return {{n, sum.x(), sum.y(), sum.z(), (n - 1) * c[0] + sum.x() * mean.x(), (n - 1) * c[1] + sum.y() * mean.y(),
-           (n - 1) * c[2] + sum.z() * mean.z(), (n - 1) * c[3] + sum.x() * mean.y(),
-           (n - 1) * c[4] + sum.x() * mean.z(), (n - 1) * c[5] + sum.y() * mean.z()}};
+  return sums_of(record, mean_of(record, from_origin, size) - corner_of_voxel(VoxelIndex(4, 4, 4), size));
 }
 
-NeighborhoodSums LeafNeighborhood::around(openvdb::Index offset) const {
+PointSums LeafNeighborhood::around(openvdb::Index offset) const {
   const auto x = static_cast<int>(offset >> 6);
   const auto y = static_cast<int>(offset >> 3 & 7);
   const auto z = static_cast<int>(offset & 7);
-  NeighborhoodSums total;
+  PointSums total;
   for (int dx = -1; dx <= 1; ++dx) {
     for (int dy = -1; dy <= 1; ++dy) {
       const std::size_t row = row_of(x + dx, y + dy);

@@ -5,18 +5,10 @@
 #include <cstdint>
 #include <vector>
 
+#include "vdbmap/core/point_sums.h"
 #include "vdbmap/core/voxel_level.h"
 
 namespace vdbmap {
-
-/// Count, sum of positions [m] and of their products [m^2] about one origin, padded to whole vector registers.
-struct alignas(32) NeighborhoodSums {
-  std::array<double, 12> values{};  ///< n, x y z, xx yy zz xy xz yz
-
-  void add(const NeighborhoodSums& other) {
-    for (std::size_t i = 0; i < values.size(); ++i) values[i] += other.values[i];
-  }
-};
 
 /// The voxels of one leaf and those that touch it: 10 x 10 rows of 10 cells. A row is a bit mask, and the sums of
 /// occupied cells lie one after the other in the order of rows and cells: three neighbours in a row are one short run.
@@ -28,7 +20,7 @@ class LeafNeighborhood {
   void load(const VoxelLeaf& leaf);
 
   /// Sums over the 27 cells around the leaf's voxel at `offset`, about the leaf's centre.
-  NeighborhoodSums around(openvdb::Index offset) const;
+  PointSums around(openvdb::Index offset) const;
 
  private:
   // A layer, row or cell of a neighbouring leaf that touches this one; `step` is -1, 0 or 1.
@@ -40,12 +32,12 @@ class LeafNeighborhood {
   void mark_cells(const VoxelLeaf& neighbor, const VoxelIndex& step);
   void number_rows();
   void sum_cells(const VoxelLeaf& neighbor, const VoxelIndex& step);
-  NeighborhoodSums sums_of(const VoxelRecord& record, const VoxelIndex& from_origin) const;
+  PointSums sums_about_center(const VoxelRecord& record, const VoxelIndex& from_origin) const;
 
   const VoxelLevel& level_;
   std::array<std::uint16_t, 100> rows_{};          // bit z + 1 of row (x, y): the cell is occupied
   std::array<std::uint16_t, 101> first_in_row_{};  // number of the sums of a row's first occupied cell
-  std::vector<NeighborhoodSums> sums_;
+  std::vector<PointSums> sums_;
 };
 
 }  // namespace vdbmap

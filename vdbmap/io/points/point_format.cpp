@@ -98,7 +98,7 @@ PointFormat detect_point_format(const std::filesystem::path& path) {
   if (is_text(front) && begins_with_number(first_data_line(front))) return PointFormat::kXyz;
   if (const auto format = format_of_extension(path)) return *format;
   if (is_text(front)) return PointFormat::kXyz;
-  throw IoError::malformed(path, "not a point file, expected PLY, PCD, LAS, KITTI .bin, XYZ, CSV or VLP-16 .pcap");
+  throw IoError::malformed(path, "not a point file, expected PLY, PCD, LAS, LAZ, KITTI .bin, XYZ, CSV or VLP-16 .pcap");
 }
 
 }  // namespace vdbmap

@@ -10,9 +10,8 @@
 #include <tuple>
 #include <utility>
 
-#include <Eigen/SVD>
-
 #include "vdbmap/core/error.h"
+#include "vdbmap/core/nearest_rotation.h"
 #include "vdbmap/io/file/line_reader.h"
 #include "vdbmap/io/file/text.h"
 #include "vdbmap/io/poses/pose_layout.h"
@@ -52,14 +51,12 @@ bool is_missing(std::span<const double> pose, const Place& place) {
   throw place.error("pose with " + std::to_string(num_nan) + " of " + std::to_string(pose.size()) + " numbers nan");
 }
 
-Eigen::Matrix3d nearest_rotation(const Eigen::Matrix3d& matrix, const Place& place) {
+Eigen::Matrix3d rotation_of_file(const Eigen::Matrix3d& matrix, const Place& place) {
   const double deviation = (matrix.transpose() * matrix - Eigen::Matrix3d::Identity()).cwiseAbs().maxCoeff();
   if (!(deviation <= kRotationTolerance))
     throw place.error("matrix is not a rotation, its columns are not orthonormal");
   if (matrix.determinant() < 0) throw place.error("matrix is not a rotation but a reflection");
-
-  const Eigen::JacobiSVD<Eigen::Matrix3d> svd(matrix, Eigen::ComputeFullU | Eigen::ComputeFullV);
-  return svd.matrixU() * svd.matrixV().transpose();
+  return nearest_rotation(matrix);
 }
 
 Eigen::Isometry3d matrix_pose(std::span<const double> numbers, const Place& place) {
@@ -71,7 +68,7 @@ Eigen::Isometry3d matrix_pose(std::span<const double> numbers, const Place& plac
     }
   }
   Eigen::Isometry3d pose = Eigen::Isometry3d::Identity();
-  pose.linear() = nearest_rotation(matrix.leftCols<3>(), place);
+  pose.linear() = rotation_of_file(matrix.leftCols<3>(), place);
   pose.translation() = matrix.col(3);
   return pose;
 }

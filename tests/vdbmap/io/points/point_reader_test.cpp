@@ -70,7 +70,7 @@ TEST_F(PointReader, TakesOtherTextForXyz) {
 
 TEST_F(PointReader, RefusesEverythingElse) {
   EXPECT_EQ(error("scan.jpg", std::string("\xff\xd8\xff\x00", 4)),
-            "scan.jpg: not a point file, expected PLY, PCD, LAS, KITTI .bin, XYZ, CSV or VLP-16 .pcap");
+            "scan.jpg: not a point file, expected PLY, PCD, LAS, LAZ, KITTI .bin, XYZ, CSV or VLP-16 .pcap");
   EXPECT_EQ(error("scan.ply", ""), "scan.ply: the file is empty");
   EXPECT_EQ(io_error_of([&] { read_points(folder_ / "none.ply"); }),
             "none.ply: cannot open: No such file or directory");
