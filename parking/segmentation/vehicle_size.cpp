@@ -11,7 +11,7 @@
 namespace vdbmap::parking {
 namespace {
 
-constexpr std::int32_t kReach = 6;         // [voxels] of 0.1 m
+constexpr std::int32_t kGroupReach = 6;    // [voxels] of 0.1 m
 constexpr double kShortestVehicle = 1.5;   // [m]
 constexpr double kHighestVehicle = 4.5;    // [m]
 constexpr std::size_t kNumDirections = 8;  // in which a length is measured
@@ -66,7 +66,7 @@ class GroupFinder {
     while (!to_visit_.empty()) {
       const VoxelIndex next = to_visit_.back();
       to_visit_.pop_back();
-      finder_.for_each_around(next, kReach, [&](const VoxelIndex& near, const VoxelRecord& record) {
+      finder_.for_each_around(next, kGroupReach, [&](const VoxelIndex& near, const VoxelRecord& record) {
         const auto found = static_cast<std::size_t>(&record - level_.records().data());
         if (classes_[found] == SurfaceClass::kVehicle && !is_met(found)) meet(near, found);
       });

@@ -40,6 +40,20 @@ TEST_F(SegmentCommand, GivesTheSameBytesForAnyNumberOfThreads) {
   expect_same_bytes("a.vdb", "b.vdb");
 }
 
+TEST_F(SegmentCommand, GivesACityTheLabelsOfTheMapThatItIs) {
+  PointCloud cloud = street();  // across the border of two tiles, 10 m from its beginning
+  for (Eigen::Vector3d& point : cloud.positions) point.x() += 54;
+  const std::string map = built("map.vdb", cloud, {"--anchor", "548864,5804032,0"});
+  ASSERT_EQ(vdbmap({"export", map, path("city/")}).exit_code, 0);
+  EXPECT_EQ(json_of({"segment", path("city/"), "-o", path("labelled/")})["tiles"],
+            json_of({"info", path("city/")})["tiles"]);
+  ASSERT_EQ(vdbmap({"segment", map, "-o", path("labelled.vdb")}).exit_code, 0);
+  EXPECT_EQ(vdbmap({"check", path("labelled/")}).exit_code, 0);
+  ASSERT_EQ(vdbmap({"export", path("labelled/"), path("one.vdb")}).exit_code, 0);
+  expect_same_bytes("one.vdb", "labelled.vdb");
+  expect_error(vdbmap({"segment", path("city/"), "-o", path("labelled/")}), ExitCode::kWrongUsage, "something in it");
+}
+
 TEST_F(SegmentCommand, LabelsThePointsOfACloudInTheirOrder) {
   const PointCloud cloud = street();
   const nlohmann::json result = json_of({"segment", ply("cloud.ply", cloud), "-o", path("cloud.label")});

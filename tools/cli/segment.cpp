@@ -15,6 +15,8 @@
 #include <spdlog/fmt/fmt.h>
 
 #include "parking/segmentation/default_weights.h"
+#include "parking/segmentation/label_city.h"
+#include "tools/cli/city_output.h"
 #include "tools/cli/command.h"
 #include "tools/cli/map_output.h"
 #include "tools/cli/output.h"
@@ -26,6 +28,8 @@
 #include "vdbmap/io/kitti/label_file.h"
 #include "vdbmap/io/points/point_reader.h"
 #include "vdbmap/io/vdb/map_file.h"
+#include "vdbmap/store/city_folder.h"
+#include "vdbmap/store/city_window.h"
 
 namespace vdbmap::cli {
 namespace {
@@ -41,7 +45,7 @@ struct SegmentCommandOptions {
 using Shares = std::map<std::int32_t, std::size_t>;
 
 void add_options(CLI::App& app, SegmentCommandOptions& options) {
-  app.add_option("INPUTS", options.inputs, "A map (.vdb); or clouds and scans, each segmented by itself")
+  app.add_option("INPUTS", options.inputs, "A map (.vdb) or a city; or clouds and scans, each segmented by itself")
       ->type_name("FILE|FOLDER...")
       ->required();
   add_map_output(app, options.output);
@@ -93,7 +97,7 @@ ExitCode run_map(const SegmentCommandOptions& options, const CommonOptions& comm
   if (options.inputs.size() != 1) throw std::invalid_argument("one map is segmented into one .vdb file");
   check_output(options.output.file, kMapKind, options.inputs);
   const parking::NetworkWeights network = weights_of(options);
-  VoxelMap map = load_map(options.inputs.front());
+  VoxelMap map = load_map_or_city(options.inputs.front());
   const auto start = std::chrono::steady_clock::now();
   try {
     parking::label_map(map, network);
@@ -105,6 +109,49 @@ ExitCode run_map(const SegmentCommandOptions& options, const CommonOptions& comm
   Shares shares;
   count(map.finest().channels().labels, shares);
   report(options, common, "voxels", shares, seconds);
+  return ExitCode::kDone;
+}
+
+void check_new_folder(const std::filesystem::path& folder) {
+  std::error_code error;
+  if (std::filesystem::is_directory(folder, error) && !std::filesystem::is_empty(folder, error)) {
+    throw std::invalid_argument(folder.string() + ": is a folder with something in it, expected a new or empty one");
+  }
+}
+
+// Whether an input is a city, and no folder of clouds or scans.
+bool is_manifest_there(const std::filesystem::path& input) {
+  if (!is_city(input)) return false;
+  std::error_code error;
+  return !std::filesystem::is_directory(input, error) || std::filesystem::exists(manifest_path(input), error);
+}
+
+ExitCode run_city(const SegmentCommandOptions& options, const CommonOptions& common) {
+  if (options.inputs.size() != 1) throw std::invalid_argument("one city is segmented into one folder");
+  check_new_folder(options.output.file);
+  const parking::NetworkWeights network = weights_of(options);
+  City city = open_city(options.inputs.front());
+  const auto start = std::chrono::steady_clock::now();
+  Progress progress("segmenting tiles", city.manifest.tiles.size(), common);
+  parking::LabelCityOptions label;
+  label.on_tiles_done = [&](std::size_t num_tiles) { progress.advance(num_tiles); };
+  CityManifest manifest;
+  try {
+    manifest = parking::label_city(city, city_folder(options.output.file), network, label);
+  } catch (const std::invalid_argument& error) {
+    throw IoError::malformed(options.inputs.front(), error.what());
+  }
+  const double seconds = seconds_since(start);
+  const std::vector<std::uint64_t> voxels = num_voxels(manifest);
+  if (common.json) {
+    print_json({{"output", options.output.file.string()},
+                {"tiles", manifest.tiles.size()},
+                {"voxels", voxels.empty() ? 0 : voxels.front()},
+                {"seconds", seconds}});
+  } else {
+    print_result(fmt::format("{}: {} tiles, {} voxels segmented in {:.1f} s\n", options.output.file.string(),
+                             manifest.tiles.size(), voxels.empty() ? 0 : voxels.front(), seconds));
+  }
   return ExitCode::kDone;
 }
 
@@ -144,13 +191,6 @@ std::vector<std::filesystem::path> label_names(const std::vector<std::filesystem
   return names;
 }
 
-void check_new_folder(const std::filesystem::path& folder) {
-  std::error_code error;
-  if (std::filesystem::is_directory(folder, error) && !std::filesystem::is_empty(folder, error)) {
-    throw std::invalid_argument(folder.string() + ": is a folder with something in it, expected a new or empty one");
-  }
-}
-
 ExitCode run_points(const SegmentCommandOptions& options, const CommonOptions& common) {
   ReadingReport reading;
   const std::vector<std::filesystem::path> files = list_inputs(options.inputs, reading);
@@ -186,7 +226,9 @@ ExitCode run_points(const SegmentCommandOptions& options, const CommonOptions& c
 }
 
 ExitCode run(const SegmentCommandOptions& options, const CommonOptions& common) {
-  return has_ending(options.output.file, kMapKind) ? run_map(options, common) : run_points(options, common);
+  if (has_ending(options.output.file, kMapKind)) return run_map(options, common);
+  const bool is_labelled_city = is_manifest_there(options.inputs.front());
+  return is_labelled_city ? run_city(options, common) : run_points(options, common);
 }
 
 }  // namespace
@@ -195,6 +237,7 @@ Command segment_command() {
   return make_command<SegmentCommandOptions>("segment",
                                              "Tell ground, buildings, vegetation, vehicles, poles, persons apart",
                                              "vdbmap segment map.vdb -o labelled.vdb\n"
+                                             "vdbmap segment city/ -o labelled/\n"
                                              "vdbmap segment survey.laz -o survey.label\n"
                                              "vdbmap segment drive/velodyne -o drive/labels --weights own.kpconv",
                                              add_options, run);
