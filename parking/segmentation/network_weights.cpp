@@ -131,7 +131,7 @@ Bottleneck read_bottleneck(MatrixReader& reader, const std::string& name, std::s
 
 }  // namespace
 
-NetworkWeights read_network(const std::filesystem::path& path) {
+std::shared_ptr<const NetworkWeights> read_network(const std::filesystem::path& path) {
   ByteReader file(path);
   const Json header = read_header(file);
   check_meaning(file, header);
@@ -143,22 +143,22 @@ NetworkWeights read_network(const std::filesystem::path& path) {
 
   const Json names = header.value("matrices", Json::array());
   MatrixReader reader(file, names);
-  NetworkWeights network;
-  network.training = header.value("training", Json()).dump();
-  network.first = reader.layer("first", kNumKernelPoints * kNumFeatures, widths[0]);
+  const auto network = std::make_shared<NetworkWeights>();
+  network->training = header.value("training", Json()).dump();
+  network->first = reader.layer("first", kNumKernelPoints * kNumFeatures, widths[0]);
   for (std::size_t level = 0; level < kNumLevels; ++level) {
     for (std::size_t i = 0; i < blocks[level]; ++i) {
       const std::size_t inputs = i == 0 ? widths[level == 0 ? 0 : level - 1] : widths[level];
       const std::string name = "encoder." + std::to_string(level) + "." + std::to_string(i);
-      network.encoder[level].push_back(read_bottleneck(reader, name, inputs, widths[level]));
+      network->encoder[level].push_back(read_bottleneck(reader, name, inputs, widths[level]));
     }
   }
   for (std::size_t level = 0; level + 1 < kNumLevels; ++level) {
-    network.decoder[level] =
+    network->decoder[level] =
         reader.layer("decoder." + std::to_string(level), widths[level + 1] + widths[level], widths[level]);
   }
-  network.head = reader.layer("head", widths[0], widths[0]);
-  network.scores = reader.layer("scores", widths[0], kNumClasses);
+  network->head = reader.layer("head", widths[0], widths[0]);
+  network->scores = reader.layer("scores", widths[0], kNumClasses);
   reader.finish();
   return network;
 }

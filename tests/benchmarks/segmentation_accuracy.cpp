@@ -182,7 +182,7 @@ void judge_street(const NetworkWeights& network, const std::filesystem::path& fo
 }
 
 int run(const std::filesystem::path& weights, const std::vector<std::filesystem::path>& folders) {
-  const NetworkWeights network = read_network(weights);
+  const NetworkWeights network = *read_network(weights);
   StreetJudgement streets;
   for (const std::filesystem::path& folder : folders) {
     if (std::filesystem::exists(folder / "street.json")) {

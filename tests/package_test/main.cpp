@@ -11,5 +11,5 @@ int main(int, char** argv) {
   const auto error = vdbmap::registration::evaluate_trajectory(vdbmap::read_trajectory(argv[1]), trajectory);
   const bool has_picture = vdbmap::png_of(vdbmap::Image(2, 2)).starts_with("\x89PNG");
   const auto network = vdbmap::parking::read_network(argv[2]);
-  return error.xy.max == 0 && has_picture && network.scores.bias.size() == 7 ? 0 : 1;
+  return error.xy.max == 0 && has_picture && network->scores.bias.size() == 7 ? 0 : 1;
 }

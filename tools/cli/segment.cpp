@@ -4,6 +4,7 @@
 #include <chrono>
 #include <filesystem>
 #include <map>
+#include <memory>
 #include <set>
 #include <stdexcept>
 #include <string>
@@ -58,7 +59,7 @@ void add_options(CLI::App& app, SegmentCommandOptions& options) {
   add_read_options(app, options.read);
 }
 
-parking::NetworkWeights weights_of(const SegmentCommandOptions& options) {
+std::shared_ptr<const parking::NetworkWeights> weights_of(const SegmentCommandOptions& options) {
   return parking::read_network(options.weights.empty() ? parking::default_weights() : options.weights);
 }
 
@@ -96,11 +97,11 @@ double seconds_since(std::chrono::steady_clock::time_point start) {
 ExitCode run_map(const SegmentCommandOptions& options, const CommonOptions& common) {
   if (options.inputs.size() != 1) throw std::invalid_argument("one map is segmented into one .vdb file");
   check_output(options.output.file, kMapKind, options.inputs);
-  const parking::NetworkWeights network = weights_of(options);
+  const auto network = weights_of(options);
   VoxelMap map = load_map_or_city(options.inputs.front());
   const auto start = std::chrono::steady_clock::now();
   try {
-    parking::label_map(map, network);
+    parking::label_map(map, *network);
   } catch (const std::invalid_argument& error) {
     throw IoError::malformed(options.inputs.front(), error.what());
   }
@@ -129,7 +130,7 @@ bool is_manifest_there(const std::filesystem::path& input) {
 ExitCode run_city(const SegmentCommandOptions& options, const CommonOptions& common) {
   if (options.inputs.size() != 1) throw std::invalid_argument("one city is segmented into one folder");
   check_new_folder(options.output.file);
-  const parking::NetworkWeights network = weights_of(options);
+  const auto network = weights_of(options);
   City city = open_city(options.inputs.front());
   const auto start = std::chrono::steady_clock::now();
   Progress progress("segmenting tiles", city.manifest.tiles.size(), common);
@@ -137,7 +138,7 @@ ExitCode run_city(const SegmentCommandOptions& options, const CommonOptions& com
   label.on_tiles_done = [&](std::size_t num_tiles) { progress.advance(num_tiles); };
   CityManifest manifest;
   try {
-    manifest = parking::label_city(city, city_folder(options.output.file), network, label);
+    manifest = parking::label_city(city, city_folder(options.output.file), *network, label);
   } catch (const std::invalid_argument& error) {
     throw IoError::malformed(options.inputs.front(), error.what());
   }
@@ -205,17 +206,17 @@ ExitCode run_points(const SegmentCommandOptions& options, const CommonOptions& c
     check_ending(options.output.file, kLabelsKind);
     check_new_folder(options.output.file);
   }
-  const parking::NetworkWeights network = weights_of(options);
+  const auto network = weights_of(options);
 
   const auto start = std::chrono::steady_clock::now();
   Shares shares;
   if (is_file) {
-    segment_file(files.front(), options.output.file, options, network, reading, shares);
+    segment_file(files.front(), options.output.file, options, *network, reading, shares);
   } else {
     AtomicFolder folder(options.output.file);
     Progress progress("segmenting", files.size(), common);
     for (std::size_t i = 0; i < files.size(); ++i) {
-      segment_file(files[i], folder.temporary_path() / names[i], options, network, reading, shares);
+      segment_file(files[i], folder.temporary_path() / names[i], options, *network, reading, shares);
       progress.advance();
     }
     folder.commit();

@@ -55,7 +55,7 @@ class PyTorch : public testing::Test {
 };
 
 TEST_F(PyTorch, HasTheSameScoresFromTheSameWeights) {
-  const NetworkWeights network = read_network(*folder_ / "weights.kpconv");
+  const NetworkWeights network = *read_network(*folder_ / "weights.kpconv");
   const Scored scored = read_scored(*folder_ / "scores.txt");
   ASSERT_EQ(scored.cloud.size(), 4000U);
   const VoxelMap map = test::fine_map_of(scored.cloud);
@@ -75,7 +75,7 @@ TEST_F(PyTorch, HasTheSameScoresFromTheSameWeights) {
 }
 
 TEST_F(PyTorch, TheNumberOfThreadsChangesNothing) {
-  const NetworkWeights network = read_network(*folder_ / "weights.kpconv");
+  const NetworkWeights network = *read_network(*folder_ / "weights.kpconv");
   const VoxelMap map = test::fine_map_of(read_scored(*folder_ / "scores.txt").cloud);
   const auto scores = [&](int threads) {
     return test::on_threads(

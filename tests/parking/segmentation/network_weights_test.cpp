@@ -52,7 +52,7 @@ class NetworkWeightsFile : public testing::Test {
 };
 
 TEST_F(NetworkWeightsFile, OfTheProjectHasTheShapesOfItsNetwork) {
-  const NetworkWeights network = read_network(kShipped);
+  const NetworkWeights network = *read_network(kShipped);
   EXPECT_EQ(network.first.weights.rows(), 15 * 4);
   EXPECT_EQ(network.first.weights.cols(), 32);
   ASSERT_EQ(network.encoder[1].size(), 2U);

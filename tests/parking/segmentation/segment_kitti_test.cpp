@@ -17,7 +17,7 @@ namespace {
 TEST(SegmentKitti, VehiclesOfASingleScanAreFoundAndLittleElseIsTakenForOne) {
   const auto data = test::real_data_folder();
   if (!data) GTEST_SKIP() << test::kNeedsRealData;
-  const NetworkWeights network = read_network(default_weights());
+  const NetworkWeights network = *read_network(default_weights());
   double hits = 0, missed = 0, wrong = 0, others = 0;
   for (const char* name : {"000003", "000012"}) {
     const ReadResult scan = read_points(*data / "kitti00" / "velodyne" / (std::string(name) + ".bin"));

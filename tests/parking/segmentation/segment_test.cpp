@@ -19,7 +19,7 @@ namespace vdbmap::parking {
 namespace {
 
 const NetworkWeights& shipped() {
-  static const NetworkWeights kNetwork = read_network(default_weights());
+  static const NetworkWeights kNetwork = *read_network(default_weights());
   return kNetwork;
 }
 
