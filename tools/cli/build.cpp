@@ -5,24 +5,20 @@
 #include <filesystem>
 #include <limits>
 #include <optional>
-#include <set>
 #include <stdexcept>
 #include <string>
 #include <vector>
 
-#include <nlohmann/json.hpp>
 #include <spdlog/fmt/fmt.h>
 #include <spdlog/spdlog.h>
 
 #include "tools/cli/build_city.h"
 #include "tools/cli/build_inputs.h"
+#include "tools/cli/build_report.h"
 #include "tools/cli/city_output.h"
-#include "tools/cli/city_summary.h"
 #include "tools/cli/command.h"
 #include "tools/cli/map_output.h"
-#include "tools/cli/map_summary.h"
 #include "tools/cli/number_list.h"
-#include "tools/cli/output.h"
 #include "tools/cli/pose_frame.h"
 #include "tools/cli/progress.h"
 #include "tools/cli/reading.h"
@@ -195,88 +191,18 @@ std::vector<std::filesystem::path> label_files(const std::vector<MapInput>& inpu
   return files;
 }
 
-void warn(const InputNotes& notes, const std::optional<int>& epsg, bool has_labels, const std::string& label_scheme) {
-  for (const ForeignUnit& unit : notes.foreign_units) {
-    spdlog::warn("{}: its unit is {} m, but its coordinates are taken as metres", unit.file.string(),
-                 unit.metres_per_unit);
-  }
-  if (!label_scheme.empty() && !has_labels) {
-    spdlog::warn("--label-scheme {}: the files hold no labels", label_scheme);
-  }
-  if (notes.epsg_of_files && epsg && notes.epsg_of_files != epsg) {
-    spdlog::warn("the files are in EPSG:{}, the map says EPSG:{}", *notes.epsg_of_files, *epsg);
-  }
-}
-
-std::size_t count_files(const std::vector<MapInput>& inputs) {
-  std::set<std::filesystem::path> files;
-  for (const MapInput& input : inputs) files.insert(input.scan.file);
-  return files.size();
-}
-
-// "64 files", "1 file", "5 scans of 1 file".
-std::string text_of_counts(std::size_t num_scans, std::size_t num_files) {
-  const std::string files = fmt::format("{} {}", num_files, num_files == 1 ? "file" : "files");
-  return num_scans == num_files ? files : fmt::format("{} scans of {}", num_scans, files);
-}
-
-// What a command that was built from files tells, beside what it made.
-struct BuildReport {
-  const InputNotes& notes;
-  const ChosenInputs& chosen;
-  ReadingReport reading;
-  double seconds = 0;
-};
-
-void add_report(nlohmann::ordered_json& json, const BuildReport& report) {
-  json["files"] = count_files(report.chosen.inputs);
-  json["scans"] = report.chosen.inputs.size();
-  if (report.chosen.poses) add_pose_frame(json, *report.chosen.poses);
-  json["dropped_points"] = report.notes.num_dropped;
-  json["points_out_of_range"] = report.notes.num_out_of_range;
-  json["findings"] = report.reading.json();
-  json["seconds"] = report.seconds;
-}
-
-std::string text_of(const BuildReport& report, const std::filesystem::path& output) {
-  const std::vector<MapInput>& inputs = report.chosen.inputs;
-  std::string text = fmt::format("{}: built from {} in {:.1f} s\n", output.string(),
-                                 text_of_counts(inputs.size(), count_files(inputs)), report.seconds);
-  if (report.notes.num_dropped > 0) {
-    text += fmt::format("dropped    {} points that are not finite\n", report.notes.num_dropped);
-  }
-  if (report.notes.num_out_of_range > 0) {
-    text += fmt::format("left out   {} points out of range\n", report.notes.num_out_of_range);
-  }
-  return text;
-}
-
-void print(const MapFromFiles& built, const std::filesystem::path& file, const BuildReport& report, bool as_json) {
-  if (as_json) {
-    nlohmann::ordered_json json = json_of_map(built.map, file);
-    add_report(json, report);
-    return print_json(json);
-  }
-  print_result(text_of(report, file) + text_of_map(built.map, file));
-}
-
-void print(const CityBuilt& built, const std::filesystem::path& folder, const BuildReport& report, bool as_json) {
-  if (as_json) {
-    nlohmann::ordered_json json = json_of_city(built.manifest, folder);
-    json["added_sources"] = built.added.size();
-    json["not_counted"] = built.not_counted;
-    add_report(json, report);
-    return print_json(json);
-  }
-  print_result(text_of(report, folder) + text_of_city(built.manifest));
-}
-
 ReadingReport complete(ReadingReport reading, const InputNotes& notes, const ChosenInputs& chosen,
                        const BuildCommandOptions& options) {
   reading.add(notes.findings);
   if (chosen.poses) reading.add(*options.poses, chosen.poses->poses.findings);
   reading.warn();
   return reading;
+}
+
+void warn_without_labels(const std::string& label_scheme, bool has_labels) {
+  if (!label_scheme.empty() && !has_labels) {
+    spdlog::warn("--label-scheme {}: the files hold no labels", label_scheme);
+  }
 }
 
 double seconds_since(std::chrono::steady_clock::time_point start) {
@@ -287,10 +213,11 @@ void run_for_file(const ChosenInputs& chosen, const MapFromFilesOptions& files, 
                   const BuildCommandOptions& options, const CommonOptions& common) {
   const auto start = std::chrono::steady_clock::now();
   const MapFromFiles built = build(chosen.inputs, files, common);
-  warn(built.notes, built.map.frame.epsg, !built.map.finest().channels().labels.empty(), options.label_scheme);
+  warn_of(built.notes, built.map.frame.epsg);
+  warn_without_labels(options.label_scheme, !built.map.finest().channels().labels.empty());
   const ReadingReport reading = complete(listed, built.notes, chosen, options);
   save_map(options.output.file, built.map, options.output.save);
-  print(built, options.output.file, {built.notes, chosen, reading, seconds_since(start)}, common.json);
+  print_built(built, options.output.file, {built.notes, chosen, reading, seconds_since(start)}, common.json);
 }
 
 void run_for_city(const ChosenInputs& chosen, const MapFromFilesOptions& files, const ReadingReport& listed,
@@ -298,12 +225,13 @@ void run_for_city(const ChosenInputs& chosen, const MapFromFilesOptions& files, 
   const auto start = std::chrono::steady_clock::now();
   const CityBuilt built =
       build_city_of(chosen.inputs, files, options.output.save, options.output.file, options.city, common);
-  const std::vector<std::string>& channels = built.manifest.layout.channels;
-  warn(built.notes, built.manifest.layout.frame.epsg, std::ranges::count(channels, "label") > 0, options.label_scheme);
+  const CityLayout& layout = built.manifest.layout;
+  warn_of(built.notes, layout.frame.epsg);
+  warn_without_labels(options.label_scheme, std::ranges::count(layout.channels, "label") > 0);
   warn_not_counted(built);
   const ReadingReport reading = complete(listed, built.notes, chosen, options);
   const std::filesystem::path folder = options.city.into ? *options.city.into : options.output.file;
-  print(built, folder, {built.notes, chosen, reading, seconds_since(start)}, common.json);
+  print_built(built, folder, {built.notes, chosen, reading, seconds_since(start)}, common.json);
 }
 
 // Before the work: whether there is one output, which can be written and is no input.
@@ -313,13 +241,18 @@ void check_outputs(const BuildCommandOptions& options, const std::vector<std::fi
   check_output(options.output.file, kMapKind, inputs);
 }
 
-// A city keeps its levels where the command says nothing of them.
+// A city keeps its levels where the command says nothing of them; its anchor and its density cannot be others.
 BuildOptions checked_build_options(const BuildCommandOptions& options) {
   BuildOptions build = build_options(options);
   if (!options.city.into) return build;
   if (!options.anchor.empty())
     throw std::invalid_argument("--anchor cannot be given with --into: a city keeps its own");
   const City city = open_city(city_folder(*options.city.into));
+  const float density = options.output.save.density;
+  if (density != SaveOptions().density && density != city.manifest.layout.density) {
+    throw std::invalid_argument(
+        fmt::format("--density is {}, but the city has {}", density, city.manifest.layout.density));
+  }
   if (!options.voxel_size && options.levels.empty()) build.voxel_sizes = city.manifest.layout.voxel_sizes;
   return build;
 }

@@ -69,9 +69,10 @@ struct CountedPoints {
   InputNotes notes;
 };
 
-// [points] that are sorted at once: some 200 bytes each, until they are sums, in an eighth of the memory.
+// [points] that are read and sorted at once: they take some 250 bytes each, with those read ahead, until they are sums;
+// of these points a third of the memory. The more of them, the fewer times sums are merged.
 std::size_t points_at_once(std::size_t memory_bytes) {
-  return std::clamp<std::size_t>(memory_bytes / 8 / 200, std::size_t{1} << 14, std::size_t{1} << 21);
+  return std::clamp<std::size_t>(memory_bytes / 3 / 250, std::size_t{1} << 14, std::size_t{1} << 21);
 }
 
 // Sums take half of the memory: the rest is for points on their way, and tiles when they are finished.

@@ -3,7 +3,7 @@
 
 #include <algorithm>
 #include <cerrno>
-#include <stdexcept>
+#include <exception>
 #include <string>
 #include <system_error>
 #include <utility>
@@ -26,13 +26,13 @@ bool is_missing(const std::filesystem::path& path) {
   return !std::filesystem::exists(path, error);
 }
 
-// Where a file goes while it is read, it is missing like one that went before.
+// Where a file goes while it is read, which readers notice in many ways, it is missing like one that went before.
 template <typename Load>
 auto unless_missing(const std::filesystem::path& path, const Load& load) -> std::optional<decltype(load())> {
   try {
     return load();
-  } catch (const IoError& error) {
-    if (error.kind() == IoError::Kind::kSystem && is_missing(path)) return std::nullopt;
+  } catch (const std::exception&) {
+    if (is_missing(path)) return std::nullopt;
     throw;
   }
 }

@@ -145,6 +145,8 @@ void CityWriter::publish(const CityManifest& manifest, std::size_t keep_epochs) 
 }
 
 void CityWriter::sweep() const {
+  // Kept by a writer that came no further: the manifest of that epoch is still the latest.
+  if (current_) remove_with_content(epoch_path(folder_, current_->manifest.epoch));
   const std::set<std::string> named = named_tiles(folder_);
   for (const Path& file : list_folder_entries(tiles_path(folder_))) {
     const std::string name = file.filename().string();

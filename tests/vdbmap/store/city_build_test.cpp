@@ -98,7 +98,7 @@ TEST_F(CityBuild, MemoryThreadsAndOrderChangeNoByte) {
     little.memory_bytes = 1 << 20;
     const std::filesystem::path other = folder_ / ("other" + std::to_string(threads));
     test::on_threads(threads, [&] { return build_city(other, inputs, little).notes.num_points; });
-    EXPECT_EQ(test::files_of_city(other), expected) << threads;
+    EXPECT_TRUE(test::files_of_city(other) == expected) << threads;
   }
 }
 
@@ -215,7 +215,7 @@ TEST_F(CityBuild, ASourceThatIsCountedAlreadyIsLeftOut) {
   const CityBuilt again = add_to_city(city(), {inputs[0], inputs[1]}, options(1));
   EXPECT_EQ(again.not_counted, (std::vector<std::string>{"a.ply", "b.ply"}));
   EXPECT_EQ(again.manifest, added.manifest);
-  EXPECT_EQ(test::files_of_city(city()), before);
+  EXPECT_TRUE(test::files_of_city(city()) == before);
 }
 
 TEST_F(CityBuild, TheSameCommandAgainGivesTheSameBytes) {
@@ -223,7 +223,7 @@ TEST_F(CityBuild, TheSameCommandAgainGivesTheSameBytes) {
   build_city(city(), inputs, options(1));
   const auto before = test::files_of_city(city());
   build_city(city(), inputs, options(1));
-  EXPECT_EQ(test::files_of_city(city()), before);
+  EXPECT_TRUE(test::files_of_city(city()) == before);
 }
 
 TEST_F(CityBuild, WhatDoesNotFitChangesNothing) {
@@ -240,7 +240,7 @@ TEST_F(CityBuild, WhatDoesNotFitChangesNothing) {
   EXPECT_THROW(add_to_city(city(), {{{folder_ / "none.ply", {}}}}, options(3)), IoError);
   EXPECT_THROW(add_to_city(city(), {file("far.ply", street_at(1e6, 1))}, options(3)), IoError);
   write_las(folder_ / "other.las", street_at(0, 5), {.epsg = 25833});
-  EXPECT_EQ(test::files_of_city(city()), before);
+  EXPECT_TRUE(test::files_of_city(city()) == before);
 
   EXPECT_THROW(add_to_city(folder_ / "new", {inputs[1]}, options()), IoError);
   EXPECT_THROW(build_city(folder_ / "new", {{{folder_ / "cut.ply", {}}}}, options()), IoError);
@@ -256,7 +256,7 @@ TEST_F(CityBuild, PointsOfAnotherSystemAreRefused) {
   const auto before = test::files_of_city(city());
   EXPECT_EQ(test::io_error_of([&] { add_to_city(city(), {b}, options()); }),
             "city: points of EPSG:25833 do not go into a city of EPSG:25832");
-  EXPECT_EQ(test::files_of_city(city()), before);
+  EXPECT_TRUE(test::files_of_city(city()) == before);
 }
 
 }  // namespace

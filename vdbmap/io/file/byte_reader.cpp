@@ -84,7 +84,7 @@ class ByteReader::PartsInMemory {
         ::mmap(nullptr, size, PROT_READ | PROT_WRITE, MAP_PRIVATE | MAP_ANONYMOUS | MAP_NORESERVE, -1, 0);
     if (memory == MAP_FAILED) throw std::bad_alloc();
     data_ = static_cast<char*>(memory);
-    ::madvise(data_, size, MADV_NOHUGEPAGE);
+    ::madvise(data_, size, MADV_HUGEPAGE);  // a wish: fewer faults where parts are read
     is_read_.resize((size + kPartSize - 1) / kPartSize);
   }
   ~PartsInMemory() {
@@ -112,7 +112,7 @@ class ByteReader::PartsInMemory {
   }
 
  private:
-  static constexpr std::uint64_t kPartSize = std::uint64_t{1} << 20;  // [bytes]
+  static constexpr std::uint64_t kPartSize = std::uint64_t{2} << 20;  // [bytes] as large as a huge page
 
   int file_;
   std::uint64_t size_;

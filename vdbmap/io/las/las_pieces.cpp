@@ -74,20 +74,33 @@ struct LasPieces::State {
     return file.bytes(count * header.record_length).data();
   }
 
-  PointCloud read_cloud() {
-    const std::size_t count = size_of_next();
-    const char* records = read_records(count);
-    PointCloud cloud = make_las_cloud(header, count);
-    store_las_points(cloud, 0, records, count, header);
+  // Stores the next `cloud.size()` points.
+  void read_into(PointCloud& cloud) {
+    const char* records = read_records(cloud.size());
+    store_las_points(cloud, 0, records, cloud.size(), header);
     std::vector<std::size_t> withheld;
-    append_withheld(withheld, 0, records, count, header);
+    append_withheld(withheld, 0, records, cloud.size(), header);
     survey.has_dropped = survey.has_dropped || !withheld.empty();
-    next_point += count;
+    next_point += cloud.size();
+  }
+
+  PointCloud read_cloud() {
+    PointCloud cloud = make_las_cloud(header, size_of_next());
+    read_into(cloud);
     return cloud;
   }
 
+  // In small pieces, all in the same memory.
   void make_survey() {
-    while (next_point < num_points && !survey.has_dropped) survey.add(read_cloud());
+    constexpr std::size_t kPointsAtOnce = 1 << 14;
+    const std::size_t points_a_piece = std::exchange(most_points, std::min(most_points, kPointsAtOnce));
+    PointCloud cloud;
+    while (next_point < num_points && !survey.has_dropped) {
+      if (cloud.size() != size_of_next()) cloud = make_las_cloud(header, size_of_next());
+      read_into(cloud);
+      survey.add(cloud);
+    }
+    most_points = points_a_piece;
     next_point = 0;
   }
 };

@@ -83,7 +83,7 @@ TEST_F(LasPiecesTest, AreTogetherTheWholeFile) {
 }
 
 TEST_F(LasPiecesTest, OfMoreBytesThanAreReadAtOnce) {
-  expect_whole(write(file_of(100'000, {.intensity = 5})), 30'000, 4);
+  expect_whole(write(file_of(200'000, {.intensity = 5})), 60'000, 4);
 }
 
 TEST_F(LasPiecesTest, OfAFileThatEndsTooEarlyAreThosePointsThatAreThere) {
