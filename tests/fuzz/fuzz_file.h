@@ -11,6 +11,7 @@
 #include <unistd.h>
 
 #include "vdbmap/core/error.h"
+#include "vdbmap/core/parallel.h"
 
 namespace vdbmap::fuzz {
 
@@ -24,9 +25,11 @@ inline std::filesystem::path file_of(const std::uint8_t* data, std::size_t size)
   return "/proc/self/fd/" + std::to_string(descriptor);
 }
 
-/// Reads the bytes as a file: that succeeds, or throws an IoError. What else happens is a finding.
+/// Reads the bytes as a file, on one thread, so that the same bytes take the same way again: that succeeds, or throws
+/// an IoError. What else happens is a finding.
 template <typename Read>
 int read(const std::uint8_t* data, std::size_t size, const Read& read_file) {
+  static const ThreadLimit one_thread(1);
   try {
     read_file(file_of(data, size));
   } catch (const IoError&) {

@@ -2,9 +2,11 @@
 // fuzz_seeds FOLDER: writes small valid files to begin fuzzing with, FOLDER/TARGET/NAME.
 #include <cstdint>
 #include <filesystem>
+#include <fstream>
 #include <iostream>
 #include <string>
 
+#include <openvdb/io/Stream.h>
 #include <openvdb/openvdb.h>
 
 #include "tests/support/las_bytes.h"
@@ -12,6 +14,7 @@
 #include "tests/support/raw_files.h"
 #include "tests/support/sample_maps.h"
 #include "tests/support/vlp16_packets.h"
+#include "vdbmap/core/map_builder.h"
 #include "vdbmap/io/kitti/kitti_bin.h"
 #include "vdbmap/io/kitti/label_file.h"
 #include "vdbmap/io/las/las.h"
@@ -21,6 +24,7 @@
 #include "vdbmap/io/table/xyz.h"
 #include "vdbmap/io/vdb/map_channels.h"
 #include "vdbmap/io/vdb/map_file.h"
+#include "vdbmap/io/vdb/vdb_file.h"
 
 namespace vdbmap {
 namespace {
@@ -113,29 +117,106 @@ std::string without_checksum(std::string vdb) {
   return vdb.replace(kIdOffset, kIdLength, "01234567-89ab-cdef-0123-456789abcdef");
 }
 
-void write_vdb_files(const fs::path& folder) {
-  const fs::path scratch = folder / "scratch.vdb";
-  const auto add = [&](const char* name) {
-    const std::string bytes = without_checksum(test::read_raw(scratch));
-    for (const char* target : {"map", "vdb", "outline"}) test::write_raw(file_in(folder, target, name), bytes);
-  };
-  save_map(scratch, test::map_of_voxels({{0, 0, 0}, {1, 0, 0}, {0, 9, -3}}));
-  add("small_map.vdb");
-  save_map(scratch, test::sample_map());
-  add("map.vdb");
-  export_channels(scratch, test::map_of_voxels({{0, 0, 0}, {1, 0, 0}}));
-  add("channels.vdb");
+void write_with_openvdb(const fs::path& path, const openvdb::GridPtrVec& grids, const openvdb::MetaMap& metadata = {},
+                        std::uint32_t compression = openvdb::io::COMPRESS_ACTIVE_MASK) {
+  openvdb::io::File file(path.string());
+  file.setCompression(compression);
+  file.write(grids, metadata);
+}
+
+// Changed bytes of compressed blocks mostly end in the decompressor: so files are there as plain numbers, too.
+void rewrite_plain(const fs::path& path) {
+  const VdbContent content = read_vdb(path);
+  write_with_openvdb(path, content.grids, *content.metadata);
+}
+
+openvdb::GridBase::Ptr fog() {
   const auto density = openvdb::FloatGrid::create(0);
   density->setName("density");
   density->tree().setValue({1, 2, 3}, 0.5F);
   density->fill({{0, 0, 0}, {15, 7, 7}}, 0.25F);
-  for (const std::uint32_t compression : {0U, 2U, 7U}) {
-    openvdb::io::File file(scratch.string());
-    file.setCompression(compression);
-    file.write({density});
-    file.close();
-    add(("fog" + std::to_string(compression) + ".vdb").c_str());
+  return density;
+}
+
+// A few voxels of some type.
+template <typename Grid>
+openvdb::GridBase::Ptr few_voxels(const char* name, const typename Grid::ValueType& value) {
+  const auto grid = Grid::create();
+  grid->setName(name);
+  grid->tree().setValue({1, 2, 3}, value);
+  grid->tree().addTile(1, {8, 0, 0}, value, true);
+  return grid;
+}
+
+// One grid of each kind that programs write, with every kind of transform.
+openvdb::GridPtrVec one_of_each() {
+  openvdb::GridPtrVec grids = {fog(),
+                               few_voxels<openvdb::Vec3SGrid>("Cd", {0.1F, 0.2F, 0.3F}),
+                               few_voxels<openvdb::Vec3DGrid>("v", {1, 2, 3}),
+                               few_voxels<openvdb::DoubleGrid>("height", 2.5),
+                               few_voxels<openvdb::Int32Grid>("id", 7),
+                               few_voxels<openvdb::Int64Grid>("time", 1'000'000'000'000),
+                               few_voxels<openvdb::BoolGrid>("inside", true),
+                               few_voxels<openvdb::MaskGrid>("mask", true)};
+  grids[1]->setTransform(openvdb::math::Transform::createLinearTransform(0.1));
+  grids[1]->setVectorType(openvdb::VEC_INVARIANT);
+  openvdb::Mat4d sheared = openvdb::Mat4d::identity();
+  sheared[1][0] = 0.5;
+  grids[2]->setTransform(openvdb::math::Transform::createLinearTransform(sheared));
+  grids[3]->setTransform(openvdb::math::Transform::createFrustumTransform({{0, 0, 0}, {10, 10, 10}}, 0.5, 5, 0.1));
+  grids[3]->setSaveFloatAsHalf(true);
+  grids[4]->setGridClass(openvdb::GRID_LEVEL_SET);
+  return grids;
+}
+
+// A map with all attributes, of one level: every grid takes 9 kB for the masks of its nodes, however few its voxels.
+VoxelMap small_map(bool has_attributes) {
+  BuildOptions options;
+  options.voxel_sizes = {0.1};
+  return build_map(small_cloud(has_attributes), options);
+}
+
+// A grid, and an instance of its voxels.
+openvdb::GridPtrVec two_of_one_tree() {
+  const openvdb::GridBase::Ptr grid = fog();
+  const openvdb::GridBase::Ptr instance = grid->copyGrid();
+  instance->setName("instance");
+  return {grid, instance};
+}
+
+void write_vdb_files(const fs::path& folder) {
+  const fs::path scratch = folder / "scratch.vdb";
+  const auto add = [&](const std::string& name) {
+    const std::string bytes = without_checksum(test::read_raw(scratch));
+    for (const char* target : {"map", "vdb", "outline"}) test::write_raw(file_in(folder, target, name), bytes);
+  };
+  const auto add_both = [&](const std::string& name) {
+    add(name + ".vdb");
+    rewrite_plain(scratch);
+    add(name + "_plain.vdb");
+  };
+  save_map(scratch, small_map(false));
+  add_both("bare_map");
+  save_map(scratch, small_map(true));
+  add_both("full_map");
+  save_map(scratch, test::map_of_voxels({{0, 0, 0}, {1, 0, 0}, {0, 9, -3}}));
+  add_both("two_levels");
+  export_channels(scratch, small_map(true));
+  add("channels.vdb");
+  for (const std::uint32_t compression : {1U, 2U, 3U, 6U}) {
+    write_with_openvdb(scratch, {fog()}, {}, compression);
+    add("fog" + std::to_string(compression) + ".vdb");
   }
+  for (const openvdb::GridBase::Ptr& grid : one_of_each()) {
+    write_with_openvdb(scratch, {grid});
+    add(grid->getName() + ".vdb");
+  }
+  write_with_openvdb(scratch, two_of_one_tree());
+  add("instance.vdb");
+  std::ofstream stream(scratch, std::ios::binary);
+  openvdb::io::Stream(stream).write(openvdb::GridPtrVec{fog()});
+  stream.close();
+  add("stream.vdb");
   fs::remove(scratch);
 }
 
