@@ -226,7 +226,8 @@ TEST_F(Build, AnOutputThatCannotBeWrittenIsToldFirst) {
   const std::string broken = write_raw(folder_ / "broken.ply", "ply\nnothing else");
   expect_error(vdbmap({"build", broken, "-o", path("no/such/folder/map.vdb")}), ExitCode::kInputOutputFailed,
                "no/such/folder");
-  expect_error(vdbmap({"build", broken, "-o", folder_.path()}), ExitCode::kInputOutputFailed, "directory");
+  expect_error(vdbmap({"build", broken, "-o", folder_.path()}), ExitCode::kBadInput,
+               "is no city: it holds 'broken.ply'");
   expect_error(vdbmap({"build", path("missing.ply"), "-o", path("map.vdb")}), ExitCode::kInputOutputFailed,
                "missing.ply");
 }
