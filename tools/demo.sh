@@ -49,17 +49,18 @@ draw_pictures() {
   vdbmap render demo/map.vdb -o demo/street.png
   vdbmap render demo/map.vdb -o demo/plan.png --view plan --trajectory demo/poses.txt "$1"
   vdbmap render demo/map.vdb -o demo/drive.png --view perspective --trajectory demo/poses.txt
+  vdbmap segment demo/map.vdb -o demo/labelled.vdb
+  vdbmap render demo/labelled.vdb -o demo/classes.png --view perspective --color-by label
 }
 
 demonstrate_on_simulated_street() {
   local street=demo/street
   vdbmap simulate "$street" --seed 1 --ideal
-  vdbmap build "$street/epoch0/cloud.las" --labels "$street/epoch0/labels/cloud.label" -o demo/map.vdb
+  vdbmap build "$street/epoch0/cloud.las" -o demo/map.vdb
   look_into_map
   vdbmap localize demo/map.vdb "$street/epoch1/scans" -o demo/poses.txt --report demo/report.json
   vdbmap evaluate demo/poses.txt "$street/epoch1/poses.txt" --plot demo/evaluation.png
   draw_pictures "$street/epoch1/poses.txt"
-  vdbmap render demo/map.vdb -o demo/classes.png --view perspective --color-by label
 }
 
 demonstrate_on_real_scans() {

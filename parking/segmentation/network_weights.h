@@ -48,8 +48,8 @@ struct NetworkWeights {
 /// Reads a file of tools/training/weights.py. Throws IoError: not such a file, damaged (checksum), cut off, of another
 /// version, of other classes or features than ours, or with matrices of other shapes than its widths ask for.
 ///
-/// Shared, so that the library frees what it has allocated: Eigen's matrices are aligned as -march asks for, and that of
-/// the caller may be another.
+/// Shared, so that the library frees what it has allocated: Eigen's matrices are aligned as -march asks for, and that
+/// of the caller may be another.
 std::shared_ptr<const NetworkWeights> read_network(const std::filesystem::path& path);
 
 }  // namespace vdbmap::parking
