@@ -5,6 +5,7 @@
 #include <cmath>
 #include <cstdint>
 #include <limits>
+#include <optional>
 #include <stdexcept>
 #include <utility>
 
@@ -15,6 +16,7 @@
 #include "vdbmap/core/hierarchy.h"
 #include "vdbmap/core/map_builder.h"
 #include "vdbmap/core/map_tiles.h"
+#include "vdbmap/core/point_cell.h"
 
 namespace vdbmap::parking {
 namespace {
@@ -174,14 +176,13 @@ std::vector<std::int32_t> point_labels(const PointCloud& cloud, const NetworkWei
   build.voxel_sizes = {kSize};
   const VoxelMap map = build_map(cloud, build);
   const std::vector<std::int32_t> of_voxels = labels_of(segment(map.finest(), network, options));
-  const double scale = voxels_per_metre(kSize);
+  const CellFinder cells(Eigen::Isometry3d(Eigen::Translation3d(-map.frame.anchor)), voxels_per_metre(kSize));
   std::vector<std::int32_t> labels(cloud.size(), kNoLabel);
   parallel_ranges(cloud.size(), 1024, [&](std::size_t begin, std::size_t end) {
     const VoxelFinder finder(map.finest());
     for (std::size_t i = begin; i < end; ++i) {
-      const Eigen::Vector3d local = cloud.positions[i] - map.frame.anchor;
-      if (!is_addressable(local, scale)) continue;
-      const VoxelRecord* record = finder.find(voxel_of_point(local, scale));
+      const std::optional<PointCell> cell = cells.find(cloud.positions[i]);
+      const VoxelRecord* record = cell ? finder.find(cell->voxel) : nullptr;
       if (record != nullptr) labels[i] = of_voxels[static_cast<std::size_t>(record - map.finest().records().data())];
     }
   });

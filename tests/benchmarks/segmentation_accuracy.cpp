@@ -14,6 +14,7 @@
 
 #include "parking/segmentation/segment.h"
 #include "vdbmap/core/map_builder.h"
+#include "vdbmap/core/point_cell.h"
 #include "vdbmap/core/voxel_level.h"
 #include "vdbmap/io/file/byte_reader.h"
 #include "vdbmap/io/kitti/label_file.h"
@@ -101,9 +102,10 @@ void judge(const Part& part, const NetworkWeights& network, Judgement& judgement
   judgement.seconds += std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count();
   judgement.num_voxels += level.size();
   const VoxelFinder finder(level);
+  const CellFinder cells(Eigen::Isometry3d(Eigen::Translation3d(-map.frame.anchor)), 10);
   for (std::size_t i = 0; i < part.cloud.size(); ++i) {
     if (!part.truth[i]) continue;
-    const VoxelRecord* record = finder.find(voxel_of_point(part.cloud.positions[i] - map.frame.anchor, 10.0));
+    const VoxelRecord* record = finder.find(cells.of_reached(part.cloud.positions[i]).voxel);
     const SurfaceClass found = classes[static_cast<std::size_t>(record - level.records().data())];
     ++judgement.confusion[static_cast<std::size_t>(*part.truth[i])][static_cast<std::size_t>(found)];
   }

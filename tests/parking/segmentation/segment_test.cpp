@@ -134,5 +134,15 @@ TEST(PointLabels, AreThoseOfTheVoxelsAndNoneFarAway) {
   }
 }
 
+// Each point lies on borders of voxels, and is rounded to either side of them; next to its voxel there is none.
+TEST(PointLabels, AreKnownOnTheBordersOfVoxelsToo) {
+  PointCloud cloud;
+  for (int x = 0; x < 100; ++x) {
+    for (int y = 0; y < 50; ++y) cloud.positions.emplace_back(548864 + 0.3 * x, 5804032 + 0.3 * y, 52.3);
+  }
+  const auto labels = point_labels(cloud, shipped());
+  EXPECT_EQ(std::ranges::count(labels, kNoLabel), 0);
+}
+
 }  // namespace
 }  // namespace vdbmap::parking
