@@ -13,8 +13,8 @@ namespace vdbmap::test {
 /// 1 m and 8 m.
 const VoxelMap& street_of_tiles();
 
-/// The files of a city and their bytes, by their names in the folder; not the lock, which says who wrote last. To be compared
-/// by == and not by EXPECT_EQ, which would print them.
+/// The files of a city and their bytes, by their names in the folder; not the lock, which says who wrote last. To be
+/// compared by == and not by EXPECT_EQ, which would print them.
 std::map<std::string, std::string> files_of_city(const std::filesystem::path& folder);
 
 }  // namespace vdbmap::test
