@@ -14,7 +14,7 @@ const VoxelMap& street_of_tiles() {
     std::mt19937 random(3);
     const auto number = [&] { return static_cast<double>(random()) * 0x1p-32; };
     PointCloud cloud;
-    for (int i = 0; i < 40'000; ++i) {
+    for (int i = 0; i < 10'000; ++i) {
       cloud.positions.emplace_back();
       for (const double factor : {300.0, 150.0, 4.0}) {
         const int axis = factor == 300 ? 0 : factor == 150 ? 1 : 2;
