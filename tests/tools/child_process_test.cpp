@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <csignal>
 #include <cstdint>
+#include <cstdio>
 #include <cstdlib>
 #include <ctime>
 #include <iostream>
@@ -18,6 +19,7 @@
 #include "tests/support/raw_files.h"
 #include "tests/support/run_command.h"
 #include "tests/support/sanitizers.h"
+#include "vdbmap/core/error.h"
 
 namespace vdbmap::cli {
 namespace {
@@ -66,16 +68,17 @@ TEST(ChildProcess, LargerFilesMayTakeMore) {
   EXPECT_EQ(ChildLimits::for_file(file).memory_bytes, (std::uint64_t{8} << 30) + 640'000'000U);
 }
 
-// What OpenVDB has to say beside the answer.
-TEST(ChildProcess, TheStreamOfErrorsIsSilent) {
+// OpenVDB warns on one of these and asserts on the other.
+TEST(ChildProcess, OnlyOurLogGoesToStderr) {
   testing::internal::CaptureStderr();
-  run_in_child("a.vdb",
-               [] {
-                 std::cerr << "WARNING: of a library" << std::endl;
-                 return ExitCode::kDone;
-               },
-               {});
-  EXPECT_EQ(testing::internal::GetCapturedStderr(), "");
+  const auto print = [] {
+    std::cerr << "WARNING: of a library" << std::endl;
+    std::fputs("an assertion\n", stderr);
+    throw IoError::malformed("a.vdb", "is damaged");
+    return ExitCode::kDone;
+  };
+  EXPECT_EQ(run_in_child("a.vdb", print, {}), ExitCode::kBadInput);
+  EXPECT_EQ(testing::internal::GetCapturedStderr(), "vdbmap: a.vdb: is damaged\n");
 }
 
 // A small file as other programs write them: a sphere of fog and some numbers.

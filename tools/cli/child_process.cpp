@@ -6,7 +6,6 @@
 #include <cstdio>
 #include <cstdlib>
 #include <cstring>
-#include <iostream>
 #include <new>
 #include <string>
 #include <system_error>
@@ -17,6 +16,7 @@
 #include <unistd.h>
 
 #include "tools/cli/error_report.h"
+#include "tools/cli/process.h"
 #include "vdbmap/core/error.h"
 
 namespace vdbmap::cli {
@@ -60,7 +60,7 @@ bool limit_memory(std::uint64_t bytes) {
   limit(RLIMIT_CPU, limits.processor_seconds);
   ::alarm(static_cast<unsigned>(kSecondsOfWaiting + 4 * limits.processor_seconds));  // one that waits uses no processor
   if (limit_memory(limits.memory_bytes)) std::set_new_handler(end_for_lack_of_memory);
-  std::cerr.rdbuf(nullptr);  // OpenVDB warns there; what we have to say goes past it
+  keep_stderr_for_log();  // OpenVDB warns there and asserts; the answer is one line of ours
   const ExitCode code = report_errors(body);
   std::fflush(nullptr);
   std::_Exit(static_cast<int>(code));

@@ -2,6 +2,7 @@
 #include "tools/cli/process.h"
 
 #include <csignal>
+#include <cstdio>
 #include <cstdlib>
 #include <ctime>
 #include <exception>
@@ -39,6 +40,8 @@ void occupy_closed_streams() {
   if (descriptor > STDERR_FILENO) ::close(descriptor);
 }
 
+int message_descriptor = STDERR_FILENO;  // where our messages go
+
 // Memory may run out where nothing can be thrown: in a thread of a library, or in a destructor of OpenVDB's trees while
 // an earlier std::bad_alloc is on its way. What is written here needs none.
 [[noreturn]] void end_without_memory() {
@@ -47,9 +50,9 @@ void occupy_closed_streams() {
   constexpr std::string_view kClearLine = "\r\033[K";  // as the log does
   constexpr std::string_view kMessage = "vdbmap: out of memory\n";
   const auto write_text = [](std::string_view text) {
-    [[maybe_unused]] const ssize_t written = ::write(STDERR_FILENO, text.data(), text.size());
+    [[maybe_unused]] const ssize_t written = ::write(message_descriptor, text.data(), text.size());
   };
-  if (::isatty(STDERR_FILENO) == 1) write_text(kClearLine);
+  if (::isatty(message_descriptor) == 1) write_text(kClearLine);
   write_text(kMessage);
   ::_exit(static_cast<int>(ExitCode::kInputOutputFailed));
 }
@@ -79,13 +82,17 @@ class PrintableMessage : public spdlog::custom_flag_formatter {
   std::unique_ptr<custom_flag_formatter> clone() const override { return std::make_unique<PrintableMessage>(); }
 };
 
-void log_to_stderr() {
-  spdlog::set_default_logger(spdlog::stderr_logger_mt("vdbmap"));
+std::unique_ptr<spdlog::formatter> message_formatter() {
   auto formatter = std::make_unique<spdlog::pattern_formatter>();
   // On a terminal a progress line may stand where the message goes.
-  formatter->add_flag<PrintableMessage>('*').set_pattern(::isatty(STDERR_FILENO) == 1 ? "\r\033[Kvdbmap: %*"
-                                                                                      : "vdbmap: %*");
-  spdlog::set_formatter(std::move(formatter));
+  const bool is_terminal = ::isatty(message_descriptor) == 1;
+  formatter->add_flag<PrintableMessage>('*').set_pattern(is_terminal ? "\r\033[Kvdbmap: %*" : "vdbmap: %*");
+  return formatter;
+}
+
+void log_to_stderr() {
+  spdlog::set_default_logger(spdlog::stderr_logger_mt("vdbmap"));
+  spdlog::set_formatter(message_formatter());
   spdlog::set_error_handler([](const std::string&) {});  // stderr is closed or full: there is nobody left to tell
 }
 
@@ -107,6 +114,19 @@ void prepare_process() {
   handle_signals();
   default_terminate_handler = std::set_terminate(handle_terminate);
   log_to_stderr();
+}
+
+void keep_stderr_for_log() {
+  using StreamSink = spdlog::sinks::stdout_sink_base<spdlog::details::console_mutex>;
+  const int kept = ::fcntl(STDERR_FILENO, F_DUPFD_CLOEXEC, STDERR_FILENO + 1);
+  const int nowhere = ::open("/dev/null", O_WRONLY | O_CLOEXEC);
+  std::FILE* const stream = kept < 0 ? nullptr : ::fdopen(kept, "w");
+  if (stream == nullptr || nowhere < 0) return;
+  ::dup2(nowhere, STDERR_FILENO);
+  ::close(nowhere);
+  message_descriptor = kept;
+  spdlog::default_logger()->sinks() = {std::make_shared<StreamSink>(stream)};
+  spdlog::default_logger()->set_formatter(message_formatter());
 }
 
 void silence_log() { spdlog::set_level(spdlog::level::err); }

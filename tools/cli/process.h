@@ -15,6 +15,10 @@ void handle_ending_signals(void (*handler)(int));
 /// Ends the process with 128 plus the signal's number and leaves no unfinished file; safe inside a signal handler.
 [[noreturn]] void stop_at_once(int signal);
 
+/// From here on only our log goes to stderr: what libraries print there, warnings of theirs, failed assertions and what
+/// the allocator finds broken, goes nowhere.
+void keep_stderr_for_log();
+
 /// Log below errors is dropped from here on.
 void silence_log();
 
