@@ -8,6 +8,8 @@
 #include <limits>
 #include <numbers>
 
+#include "parking/voxel_groups.h"
+
 namespace vdbmap::parking {
 namespace {
 
@@ -50,61 +52,23 @@ class Extent {
   std::array<double, kNumDirections + 1> high_{};
 };
 
-// Walks from a voxel of a vehicle to all that hang together with it.
-class GroupFinder {
- public:
-  GroupFinder(const VoxelLevel& level, const std::vector<SurfaceClass>& classes)
-      : level_(level), classes_(classes), finder_(level), is_met_(level.size(), 0) {}
-
-  bool is_met(std::size_t number) const { return is_met_[number] != 0; }
-
-  // Numbers of the group's voxels.
-  const std::vector<std::size_t>& group_of(const VoxelIndex& voxel, std::size_t number, Extent& extent) {
-    group_.clear();
-    to_visit_.clear();
-    meet(voxel, number);
-    while (!to_visit_.empty()) {
-      const VoxelIndex next = to_visit_.back();
-      to_visit_.pop_back();
-      finder_.for_each_around(next, kGroupReach, [&](const VoxelIndex& near, const VoxelRecord& record) {
-        const auto found = static_cast<std::size_t>(&record - level_.records().data());
-        if (classes_[found] == SurfaceClass::kVehicle && !is_met(found)) meet(near, found);
-      });
-      extent.add(center_of_voxel(next, level_.voxel_size()));
-    }
-    return group_;
-  }
-
- private:
-  void meet(const VoxelIndex& voxel, std::size_t number) {
-    is_met_[number] = 1;
-    group_.push_back(number);
-    to_visit_.push_back(voxel);
-  }
-
-  const VoxelLevel& level_;
-  const std::vector<SurfaceClass>& classes_;
-  VoxelFinder finder_;
-  std::vector<std::uint8_t> is_met_;
-  std::vector<std::size_t> group_;
-  std::vector<VoxelIndex> to_visit_;
-};
-
 }  // namespace
 
 void drop_what_is_no_vehicle(const VoxelLevel& level, std::span<const SurfaceClass> second,
                              std::vector<SurfaceClass>& classes) {
-  std::vector<std::size_t> dropped;
-  GroupFinder groups(level, classes);
+  std::vector<std::uint8_t> is_vehicle(level.size());
+  std::ranges::transform(classes, is_vehicle.begin(),
+                         [](SurfaceClass surface) { return surface == SurfaceClass::kVehicle ? 1 : 0; });
+  std::vector<Eigen::Vector3d> centers(level.size());
   for_each_voxel(level, [&](const VoxelIndex& voxel, std::size_t number) {
-    if (classes[number] != SurfaceClass::kVehicle || groups.is_met(number)) return;
-    Extent extent;
-    const std::vector<std::size_t>& group = groups.group_of(voxel, number, extent);
-    if (extent.length() < kShortestVehicle || extent.height() > kHighestVehicle) {
-      dropped.insert(dropped.end(), group.begin(), group.end());
-    }
+    if (is_vehicle[number] != 0) centers[number] = center_of_voxel(voxel, level.voxel_size());
   });
-  for (const std::size_t number : dropped) classes[number] = second[number];
+  for (const VoxelGroup& group : find_groups(level, is_vehicle, kGroupReach)) {
+    Extent extent;
+    for (const std::size_t number : group) extent.add(centers[number]);
+    if (extent.length() >= kShortestVehicle && extent.height() <= kHighestVehicle) continue;
+    for (const std::size_t number : group) classes[number] = second[number];
+  }
 }
 
 }  // namespace vdbmap::parking
