@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // How well boxes around the vehicles of a labelled map fit the true ones: vehicle_accuracy LABELLED.vdb VEHICLES.csv,
-// the second one of `vdbmap simulate`. Vehicles that no label says anything about were not seen and do not count.
+// the second one of `vdbmap simulate`. Vehicles count where the map has 100 voxels of theirs or more, whatever they are
+// called.
 #include <algorithm>
 #include <cmath>
 #include <cstdio>
@@ -17,7 +18,8 @@
 namespace vdbmap::parking {
 namespace {
 
-constexpr double kFound = 0.5;  // overlap in plan
+constexpr double kFound = 0.5;        // overlap in plan
+constexpr double kAboveGround = 0.3;  // [m] what is lower in a box may be the road
 
 // id, body, x, y, z, length, width, height, heading, pitch, roll, space
 std::vector<UprightBox> read_boxes(const std::filesystem::path& path, const Eigen::Vector3d& anchor) {
@@ -40,12 +42,14 @@ std::vector<UprightBox> read_boxes(const std::filesystem::path& path, const Eige
   return boxes;
 }
 
-// Voxels called vehicles in a box.
+// Voxels in a box, of whatever class, but those of the road.
 std::size_t num_seen(const VoxelLevel& level, const UprightBox& box) {
   std::size_t count = 0;
   for_each_voxel(level, [&](const VoxelIndex& voxel, std::size_t number) {
-    if (level.channels().labels[number] != 10) return;
-    count += box.contains(mean_of(level.records()[number], voxel, level.voxel_size()).head<2>()) ? 1 : 0;
+    const Eigen::Vector3d mean = mean_of(level.records()[number], voxel, level.voxel_size());
+    const double from_middle = mean.z() - box.center.z();
+    if (from_middle < kAboveGround - box.height / 2 || from_middle > box.height / 2) return;
+    count += box.contains(mean.head<2>()) ? 1 : 0;
   });
   return count;
 }

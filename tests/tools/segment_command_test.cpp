@@ -52,6 +52,10 @@ TEST_F(SegmentCommand, GivesACityTheLabelsOfTheMapThatItIs) {
   ASSERT_EQ(vdbmap({"export", path("labelled/"), path("one.vdb")}).exit_code, 0);
   expect_same_bytes("one.vdb", "labelled.vdb");
   expect_error(vdbmap({"segment", path("city/"), "-o", path("labelled/")}), ExitCode::kWrongUsage, "something in it");
+  for (const std::string name : {"city.label", "city.png"}) {
+    expect_error(vdbmap({"segment", path("city/"), "-o", path(name)}), ExitCode::kWrongUsage, name);
+    EXPECT_FALSE(std::filesystem::exists(path(name)));
+  }
 }
 
 TEST_F(SegmentCommand, LabelsThePointsOfACloudInTheirOrder) {

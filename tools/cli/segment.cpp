@@ -129,6 +129,10 @@ bool is_manifest_there(const std::filesystem::path& input) {
 
 ExitCode run_city(const SegmentCommandOptions& options, const CommonOptions& common) {
   if (options.inputs.size() != 1) throw std::invalid_argument("one city is segmented into one folder");
+  check_ending(options.output.file, kMapKind);
+  if (has_ending(options.output.file, kLabelsKind)) {
+    throw std::invalid_argument(options.output.file.string() + ": a city is written as a city, .label is for points");
+  }
   check_new_folder(options.output.file);
   const auto network = weights_of(options);
   City city = open_city(options.inputs.front());
