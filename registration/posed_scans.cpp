@@ -34,7 +34,9 @@ void PosedScans::hand_on() {
   Waiting& scan = *waiting_;
   if (!scan.first_time || scan.scan.times.empty()) {
     const std::vector<Eigen::Vector3d> origin = {Eigen::Vector3d::Zero()};
-    receiver_({scan.scan, scan.map_from_scan, origin});
+    PointCloud untimed = std::move(scan.scan);
+    untimed.times.clear();
+    receiver_({untimed, scan.map_from_scan, origin, scan.elapsed});
     return;
   }
   ScanMotion motion;
@@ -44,7 +46,7 @@ void PosedScans::hand_on() {
   const std::vector<Eigen::Vector3d> sensor(scan.scan.size(), Eigen::Vector3d::Zero());
   const std::vector<Eigen::Vector3d> origins = deskew_points(sensor, scan.scan.times, motion);
   const PointCloud deskewed = deskew(std::move(scan.scan), motion);
-  receiver_({deskewed, scan.map_from_scan, origins});
+  receiver_({deskewed, scan.map_from_scan, origins, scan.elapsed, *scan.first_time});
 }
 
 }  // namespace vdbmap::registration

@@ -32,6 +32,7 @@ PosedDrive::PosedDrive(const std::vector<MapInput>& inputs, const std::vector<Sc
 }
 
 void PosedDrive::for_each(const std::function<void(const PosedCloud&)>& take) {
+  constexpr double kUsualTurn = 0.1;  // [s] of scans whose times are not looked at
   ScanReader reader(options_.read);
   registration::PosedScans deskewed(take);
   std::size_t next_place = places_.empty() ? 0 : places_.front();
@@ -44,7 +45,8 @@ void PosedDrive::for_each(const std::function<void(const PosedCloud&)>& take) {
     } else if (options_.deskews) {
       deskewed.add(std::move(*scan), pose_of(inputs_[i]));
     } else {
-      take({*scan, pose_of(inputs_[i]), sensor_itself()});
+      scan->times.clear();
+      take({*scan, pose_of(inputs_[i]), sensor_itself(), kUsualTurn * static_cast<double>(places_[i])});
     }
     options_.on_scan_done();
   }

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "vdbmap/change/held_surface.h"
 
-#include <Eigen/LU>
+#include <Eigen/Eigenvalues>
 
 #include "vdbmap/core/eigen_features.h"
 #include "vdbmap/core/parallel.h"
@@ -38,7 +38,10 @@ HeldSurface held_surface(const VoxelRecord& record, double voxel_size) {
   surface.mean = mean_of(record, VoxelIndex(0), voxel_size).cast<float>();
   surface.normal = normal.cast<float>();
   surface.variance = static_cast<float>(normal.dot(covariance * normal));
-  surface.information = covariance.inverse().cast<float>();
+  Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d> axes;
+  axes.computeDirect(covariance);
+  surface.axes_from_map = axes.eigenvectors().transpose().cast<float>();
+  surface.variances = axes.eigenvalues().cast<float>();
   return surface;
 }
 

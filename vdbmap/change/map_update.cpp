@@ -36,10 +36,6 @@ VoxelMap map_of_drive(const VoxelMap& map, const CloudSource& clouds, const Upda
   return drive;
 }
 
-bool is_most(std::uint32_t passes, std::uint32_t hits, double share) {
-  return passes > share * (static_cast<double>(passes) + hits);
-}
-
 // Whether the drive's points lie on another surface than the map's: the distance of their means across the surface,
 // against what it is known to.
 bool differ(const VoxelRecord& map, const VoxelRecord& drive, double voxel_size, const RayTrust& trust) {
@@ -55,12 +51,13 @@ bool differ(const VoxelRecord& map, const VoxelRecord& drive, double voxel_size,
 
 class Update {
  public:
-  Update(const VoxelMap& map, const VoxelMap& drive, const RayEvidence& evidence, const UpdateOptions& options)
+  Update(const VoxelMap& map, const VoxelMap& drive, const RayEvidence& evidence, const std::vector<TimeBins>& presence,
+         const UpdateOptions& options)
       : map_(map.finest()),
         drive_(drive.finest()),
         options_(options),
-        passes_(evidence.passes(0)),
-        moved_(find_moved(drive, evidence.passes(1), options)) {
+        moved_(find_seen_through(drive_, evidence.passes(1), evidence.pass_times(1), drive_, presence, options.moved)),
+        gone_(find_seen_through(map_, evidence.passes(0), evidence.pass_times(0), drive_, presence, options.gone)) {
     fates_.resize(map_.size());
     parallel_for(
         map_.leaves().size(),
@@ -99,8 +96,7 @@ class Update {
   Fate fate_of(const VoxelIndex& voxel, std::size_t record, const VoxelFinder& finder) const {
     const VoxelRecord* drive = finder.find(voxel);
     const bool is_still_there = drive && moved_[static_cast<std::size_t>(drive - drive_.records().data())] == 0;
-    const std::uint32_t hits = is_still_there ? drive->count : 0;
-    const bool is_gone = passes_[record] >= options_.min_passes && is_most(passes_[record], hits, options_.gone_share);
+    const bool is_gone = gone_[record] != 0;
     if (!is_still_there) return is_gone ? Fate::kGone : Fate::kUnseen;
     const bool is_other = is_gone || differ(map_.records()[record], *drive, map_.voxel_size(), options_.trust);
     return is_other ? Fate::kReplaced : Fate::kConfirmed;
@@ -109,8 +105,8 @@ class Update {
   const VoxelLevel& map_;
   const VoxelLevel& drive_;
   const UpdateOptions& options_;
-  const std::vector<std::uint32_t>& passes_;
-  std::vector<std::uint8_t> moved_;
+  std::vector<std::uint8_t> moved_;  // a record of the drive
+  std::vector<std::uint8_t> gone_;   // a record of the map
   std::vector<Fate> fates_;
 };
 
@@ -196,19 +192,8 @@ void count_rays(UpdatedMap& updated, const VoxelMap& map, const std::optional<Vi
 
 void UpdateOptions::check() const {
   trust.check();
-  require(min_passes >= 1, "min_passes", min_passes, "1 or more");
-  require(gone_share > 0 && gone_share < 1, "gone_share", gone_share, "between 0 and 1");
-  require(moved_share > 0 && moved_share < 1, "moved_share", moved_share, "between 0 and 1");
-}
-
-std::vector<std::uint8_t> find_moved(const VoxelMap& drive, const std::vector<std::uint32_t>& passes,
-                                     const UpdateOptions& options) {
-  std::vector<std::uint8_t> moved(drive.finest().size());
-  for (std::size_t i = 0; i < moved.size(); ++i) {
-    moved[i] =
-        passes[i] >= options.min_passes && is_most(passes[i], drive.finest().records()[i].count, options.moved_share);
-  }
-  return moved;
+  gone.check();
+  moved.check();
 }
 
 UpdatedMap update_map(const VoxelMap& map, const std::optional<Visibility>& before, const CloudSource& clouds,
@@ -217,8 +202,9 @@ UpdatedMap update_map(const VoxelMap& map, const std::optional<Visibility>& befo
   if (before) check_visibility(*before, map.finest());
   const VoxelMap drive = map_of_drive(map, clouds, options);
   RayEvidence evidence({&map, &drive}, options.trust);
+  const std::vector<TimeBins> presence = presence_of(drive, clouds);
   clouds([&](const PosedCloud& posed) { evidence.add(rays_of(posed, map.frame.anchor)); });
-  const Update update(map, drive, evidence, options);
+  const Update update(map, drive, evidence, presence, options);
 
   UpdatedMap updated;
   updated.counts = update.counts();

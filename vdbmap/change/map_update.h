@@ -6,6 +6,7 @@
 #include <optional>
 
 #include "vdbmap/change/ray_evidence.h"
+#include "vdbmap/change/seen_through.h"
 #include "vdbmap/core/posed_cloud.h"
 #include "vdbmap/core/visibility.h"
 #include "vdbmap/core/voxel_map.h"
@@ -17,9 +18,8 @@ struct UpdateOptions {
   std::optional<std::int32_t> epoch;  ///< of the drive; stored in the voxels that it saw
   RayTrust trust;
 
-  std::uint32_t min_passes = 3;  ///< rays through a voxel of the map for it to be gone
-  double gone_share = 0.5;       ///< of all rays that went through or ended in a voxel of the map, for it to be gone
-  double moved_share = 0.5;      ///< the same of a voxel of the drive itself, which then held something that moved
+  SeenThroughOptions gone;   ///< when voxels of the map are gone
+  SeenThroughOptions moved;  ///< when voxels of the drive held something that moved while it lasted
 
   /// Throws std::invalid_argument naming the value and what is allowed.
   void check() const;
@@ -47,14 +47,10 @@ struct UpdatedMap {
 /// through are gone, those that nobody looked at stay (two time scales, as ELite: Gil et al. 2025). A voxel where the
 /// drive saw something else holds that alone. Without `before`, what the map's own rays said is not known.
 ///
-/// Clouds are gone through twice. The result does not depend on their order, nor on how they are cut, nor on the number
-/// of threads. Throws std::invalid_argument for bad options and a visibility of another map, std::out_of_range as
-/// MapBuilder::add().
+/// Clouds are gone through three times. The result does not depend on their order, nor on how they are cut, nor on the
+/// number of threads. Throws std::invalid_argument for bad options and a visibility of another map, std::out_of_range
+/// as MapBuilder::add().
 UpdatedMap update_map(const VoxelMap& map, const std::optional<Visibility>& before, const CloudSource& clouds,
                       const UpdateOptions& options = {});
-
-/// Which voxels of a drive held something that moved while it lasted: one a record of the drive's finest level.
-std::vector<std::uint8_t> find_moved(const VoxelMap& drive, const std::vector<std::uint32_t>& passes,
-                                     const UpdateOptions& options);
 
 }  // namespace vdbmap

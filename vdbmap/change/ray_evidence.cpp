@@ -17,7 +17,7 @@ namespace {
 
 constexpr double kUnknownIncidence = 0.2;  // sine of the least angle to a surface of which nothing else is known
 constexpr double kMinIncidence = 0.1;      // sine; rays along a surface do not tell whether it is there
-constexpr double kReach = 2;               // squared Mahalanobis distance: to the edge of a disc filled evenly
+constexpr double kDiscReach = 2;           // squared Mahalanobis distance: to the edge of a disc filled evenly
 constexpr double kSigmas = 3;
 
 }  // namespace
@@ -25,6 +25,7 @@ constexpr double kSigmas = 3;
 void RayTrust::check() const {
   require(range_sigma >= 0 && range_sigma <= 1, "range_sigma", range_sigma, "0 to 1 m");
   require(position_sigma >= 0 && position_sigma <= 1, "position_sigma", position_sigma, "0 to 1 m");
+  require(angle_sigma >= 0 && angle_sigma <= 0.1, "angle_sigma", angle_sigma, "0 to 0.1 rad");
   require(clearance >= 0 && clearance <= 2, "clearance", clearance, "0 to 2 m");
   require(max_range > 0, "max_range", max_range, "above 0 m");
 }
@@ -44,6 +45,7 @@ class RayEvidence::Walker {
     length_ = way.norm();
     direction_ = way / length_;
     origin_ = ray.origin;
+    time_ = TimeBins::at(ray.time);
     const double stop = std::min(length_ - margin_before(ray.end), trust_.max_range);
     if (stop > 0) walk(stop);  // false for a ray without length
   }
@@ -114,6 +116,7 @@ class RayEvidence::Walker {
           continue;
         }
         std::atomic_ref(met.passes[record]).fetch_add(1, std::memory_order_relaxed);
+        add_shared(met.pass_times[record], time_);
       }
     } while (cells.advance(arrival, stop));
   }
@@ -127,11 +130,13 @@ class RayEvidence::Walker {
     const double crossing =
         surface.has_normal() ? surface.normal.cast<double>().dot(from_origin) / sine : direction_.dot(from_origin);
     if (!(crossing >= enter && crossing < exit)) return false;
+    const double turned = trust_.angle_sigma * crossing;
+    const double position = std::sqrt(trust_.position_sigma * trust_.position_sigma + turned * turned);
     const Eigen::Vector3f off = (crossing * direction_ - from_origin).cast<float>();
-    if (off.dot(surface.information * off) > kReach) return false;
+    if (surface.distance_squared(off, static_cast<float>(position)) > kDiscReach) return false;
     const double spread = surface.has_normal() ? surface.variance : voxel_size_ * voxel_size_ / 12;
     const double across = trust_.range_sigma * sine;
-    const double sigma = std::sqrt(spread + across * across + trust_.position_sigma * trust_.position_sigma);
+    const double sigma = std::sqrt(spread + across * across + position * position);
     return (length_ - crossing) * std::abs(sine) >= kSigmas * sigma;
   }
 
@@ -143,6 +148,7 @@ class RayEvidence::Walker {
   Eigen::Vector3d origin_ = Eigen::Vector3d::Zero();     // of the ray that is followed
   Eigen::Vector3d direction_ = Eigen::Vector3d::Zero();  // unit
   double length_ = 0;                                    // [m]
+  TimeBins time_;
 };
 
 RayEvidence::RayEvidence(std::vector<const VoxelMap*> maps, const RayTrust& trust) : trust_(trust) {
@@ -155,7 +161,8 @@ RayEvidence::RayEvidence(std::vector<const VoxelMap*> maps, const RayTrust& trus
     if (!(map->frame.anchor == maps.front()->frame.anchor)) throw std::invalid_argument("the maps have two anchors");
     if (map->finest().voxel_size() != voxel_size_) throw std::invalid_argument("the maps have two voxel sizes");
     space_.add_occupied(map->finest().tree(), sides_.size());
-    sides_.push_back({map, held_surfaces(map->finest()), std::vector<std::uint32_t>(map->finest().size())});
+    sides_.push_back({map, held_surfaces(map->finest()), std::vector<std::uint32_t>(map->finest().size()),
+                      std::vector<TimeBins>(map->finest().size())});
   }
 }
 

@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "vdbmap/change/held_surface.h"
+#include "vdbmap/change/presence.h"
 #include "vdbmap/change/seen_space.h"
 #include "vdbmap/core/measured_ray.h"
 #include "vdbmap/core/visibility.h"
@@ -17,7 +18,8 @@ namespace vdbmap {
 /// How far rays are believed.
 struct RayTrust {
   double range_sigma = 0.02;     ///< [m] of a measured distance
-  double position_sigma = 0.02;  ///< [m] of rays against the map, across the ray: poses, and the map's own errors
+  double position_sigma = 0.01;  ///< [m] of rays against the map, across the ray: poses, and the map's own errors
+  double angle_sigma = 0.0005;   ///< [rad] of a ray's direction
   double clearance = 0.15;       ///< [m] to the surface in which a ray ends: nearer to it, nothing counts as passed
   double max_range = 60;         ///< [m] from the sensor; beyond, nothing counts as passed
 
@@ -45,6 +47,9 @@ class RayEvidence {
   /// For every record of the finest level of map number `map`, how many rays went through what it holds.
   const std::vector<std::uint32_t>& passes(std::size_t map) const { return sides_[map].passes; }
 
+  /// The same, when.
+  const std::vector<TimeBins>& pass_times(std::size_t map) const { return sides_[map].pass_times; }
+
   /// The voxels that rays went through and that no map occupies.
   VoxelTree seen_empty() const { return space_.seen_empty(); }
 
@@ -53,6 +58,7 @@ class RayEvidence {
     const VoxelMap* map = nullptr;
     std::vector<HeldSurface> surfaces;
     std::vector<std::uint32_t> passes;
+    std::vector<TimeBins> pass_times;
   };
   class Walker;
 

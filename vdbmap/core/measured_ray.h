@@ -5,10 +5,11 @@
 
 namespace vdbmap {
 
-/// A laser ray from the sensor to the point that it measured [m].
+/// A laser ray from the sensor to the point that it measured [m], and when [s].
 struct MeasuredRay {
   Eigen::Vector3d origin = Eigen::Vector3d::Zero();
   Eigen::Vector3d end = Eigen::Vector3d::Zero();
+  double time = 0;
 };
 
 }  // namespace vdbmap

@@ -18,7 +18,7 @@ std::vector<MeasuredRay> rays_of(const PosedCloud& posed, const Eigen::Vector3d&
   std::vector<MeasuredRay> rays(num_points);
   for (std::size_t i = 0; i < num_points; ++i) {
     const Eigen::Vector3d& origin = posed.origins_in_cloud[num_origins == 1 ? 0 : i];
-    rays[i] = {local_from_cloud * origin, local_from_cloud * posed.cloud.positions[i]};
+    rays[i] = {local_from_cloud * origin, local_from_cloud * posed.cloud.positions[i], posed.time_of_point(i)};
   }
   return rays;
 }

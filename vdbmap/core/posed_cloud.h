@@ -17,6 +17,13 @@ struct PosedCloud {
   const PointCloud& cloud;
   Eigen::Isometry3d map_from_cloud;                   ///< original system
   std::span<const Eigen::Vector3d> origins_in_cloud;  ///< [m] of the rays: one for all points, or one a point
+  double time = 0;                                    ///< [s] of the cloud, by a clock that all clouds of a drive share
+  double time_stamp = 0;                              ///< [s] the same moment by the points' times, where they have any
+
+  /// When a point was measured [s], by the clock of the drive.
+  double time_of_point(std::size_t i) const {
+    return cloud.times.empty() ? time : time + (cloud.times[i] - time_stamp);
+  }
 };
 
 /// Goes through the clouds of a drive, in the same order each time it is called.
