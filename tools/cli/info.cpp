@@ -13,6 +13,7 @@
 #include "vdbmap/io/file/text.h"
 #include "vdbmap/io/vdb/map_file.h"
 #include "vdbmap/io/vdb/vdb_description.h"
+#include "vdbmap/io/vdb/visibility_file.h"
 #include "vdbmap/store/city_folder.h"
 
 namespace vdbmap::cli {
@@ -81,11 +82,37 @@ Json json_of(const VdbDescription& description, const std::filesystem::path& fil
   return {{"file", file.string()}, {"is_map", false}, {"metadata", json_of(description.metadata)}, {"grids", grids}};
 }
 
+// What the map knows beside its voxels.
+struct MapBackground {
+  bool has_visibility = false;
+  MapHistory history;
+};
+
+std::string text_of(const MapBackground& background) {
+  std::string text = background.has_visibility ? "rays       kept: what is free is known\n"
+                                               : "rays       none: what is not occupied was never seen\n";
+  for (const MapEpoch& epoch : background.history.epochs) {
+    text += fmt::format("epoch      {}{}\n", epoch.number, epoch.date.empty() ? "" : ", " + printable(epoch.date));
+  }
+  return text;
+}
+
+void add_background(Json& json, const MapBackground& background) {
+  json["visibility"] = background.has_visibility;
+  json["history"] = Json::array();
+  for (const MapEpoch& epoch : background.history.epochs) {
+    json["history"].push_back({{"epoch", epoch.number}, {"date", epoch.date.empty() ? Json() : Json(epoch.date)}});
+  }
+}
+
 void tell_map(const VoxelMap& map, const std::filesystem::path& file, const CommonOptions& common) {
+  const MapBackground background{has_visibility(file), load_history(file)};
   if (common.json) {
-    print_json(json_of_map(map, file));
+    Json json = json_of_map(map, file);
+    add_background(json, background);
+    print_json(json);
   } else {
-    print_result(printable(file.string()) + ": a map of vdbmap\n" + text_of_map(map, file));
+    print_result(printable(file.string()) + ": a map of vdbmap\n" + text_of_map(map, file) + text_of(background));
   }
 }
 

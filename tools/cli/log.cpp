@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
+#include <algorithm>
 #include <cstddef>
 #include <cstdint>
 #include <filesystem>
@@ -11,6 +12,7 @@
 #include "tools/cli/command.h"
 #include "tools/cli/output.h"
 #include "vdbmap/io/file/text.h"
+#include "vdbmap/io/vdb/map_file.h"
 #include "vdbmap/store/city_folder.h"
 
 namespace vdbmap::cli {
@@ -21,7 +23,9 @@ struct LogOptions {
 };
 
 void add_options(CLI::App& app, LogOptions& options) {
-  app.add_option("CITY", options.city, "A city, the folder that build made")->type_name("FOLDER")->required();
+  app.add_option("MAP", options.city, "A city, the folder that build made, or a map (.vdb)")
+      ->type_name("FILE|FOLDER")
+      ->required();
 }
 
 // A city in one epoch.
@@ -67,7 +71,52 @@ nlohmann::ordered_json json_of(const LogRow& row) {
           {"new_sources", sources}};
 }
 
+std::string text_of(const MapChanges& changes) {
+  return fmt::format("  added {}, gone {}, replaced {}, confirmed {}, unseen {} voxels; {} left out that moved\n",
+                     changes.added, changes.gone, changes.replaced, changes.confirmed, changes.unseen, changes.moved);
+}
+
+nlohmann::ordered_json json_of(const MapChanges& changes) {
+  return {{"added", changes.added},         {"gone", changes.gone},     {"replaced", changes.replaced},
+          {"confirmed", changes.confirmed}, {"unseen", changes.unseen}, {"moved", changes.moved}};
+}
+
+std::string text_of(const MapHistory& history, const MapEpoch& epoch) {
+  std::string text = fmt::format("epoch {}{}: {} sources\n", epoch.number,
+                                 epoch.date.empty() ? "" : " (" + printable(epoch.date) + ")",
+                                 std::ranges::count(history.sources, epoch.number, &MapSource::epoch));
+  return epoch.changes == MapChanges() ? text : text + text_of(epoch.changes);
+}
+
+nlohmann::ordered_json json_of(const MapHistory& history, const MapEpoch& epoch) {
+  auto sources = nlohmann::ordered_json::array();
+  for (const MapSource& source : history.sources) {
+    if (source.epoch == epoch.number) sources.push_back({{"name", source.name}, {"hash", source.hash}});
+  }
+  return {{"epoch", epoch.number},
+          {"date", epoch.date.empty() ? nlohmann::ordered_json() : nlohmann::ordered_json(epoch.date)},
+          {"changes", json_of(epoch.changes)},
+          {"new_sources", sources}};
+}
+
+ExitCode run_file(const LogOptions& options, const CommonOptions& common) {
+  const MapHistory history = load_history(options.city);
+  std::string text;
+  auto json = nlohmann::ordered_json::array();
+  for (const MapEpoch& epoch : history.epochs) {
+    text += text_of(history, epoch);
+    json.push_back(json_of(history, epoch));
+  }
+  if (common.json) {
+    print_json(json);
+  } else {
+    print_result(text.empty() ? options.city.string() + ": does not say from what it was made\n" : text);
+  }
+  return ExitCode::kDone;
+}
+
 ExitCode run(const LogOptions& options, const CommonOptions& common) {
+  if (!is_city(options.city)) return run_file(options, common);
   open_city(options.city);  // says what is wrong with a folder that is no city
   const std::map<std::int32_t, CityManifest> epochs = read_epochs(options.city);
   std::set<std::string> known_tiles;
@@ -89,9 +138,9 @@ ExitCode run(const LogOptions& options, const CommonOptions& common) {
 }  // namespace
 
 Command log_command() {
-  return make_command<LogOptions>("log", "List the epochs of a city and what was added in each",
+  return make_command<LogOptions>("log", "List the epochs of a city or a map and what each changed",
                                   "vdbmap log city/\n"
-                                  "vdbmap log city/ --json",
+                                  "vdbmap log map2.vdb --json",
                                   add_options, run);
 }
 

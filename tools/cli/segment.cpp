@@ -29,6 +29,7 @@
 #include "vdbmap/io/kitti/label_file.h"
 #include "vdbmap/io/points/point_reader.h"
 #include "vdbmap/io/vdb/map_file.h"
+#include "vdbmap/io/vdb/visibility_file.h"
 #include "vdbmap/store/city_folder.h"
 #include "vdbmap/store/city_window.h"
 
@@ -94,6 +95,12 @@ double seconds_since(std::chrono::steady_clock::time_point start) {
   return std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
 }
 
+// Of a map in a file; the voxels stay the same.
+MapExtras extras_of(const std::filesystem::path& input, const VoxelMap& map) {
+  if (is_city(input)) return {};
+  return {load_visibility(input, map), load_history(input)};
+}
+
 ExitCode run_map(const SegmentCommandOptions& options, const CommonOptions& common) {
   if (options.inputs.size() != 1) throw std::invalid_argument("one map is segmented into one .vdb file");
   check_output(options.output.file, kMapKind, options.inputs);
@@ -106,7 +113,7 @@ ExitCode run_map(const SegmentCommandOptions& options, const CommonOptions& comm
     throw IoError::malformed(options.inputs.front(), error.what());
   }
   const double seconds = seconds_since(start);
-  save_map(options.output.file, map, options.output.save);
+  save_map(options.output.file, map, extras_of(options.inputs.front(), map), options.output.save);
   Shares shares;
   count(map.finest().channels().labels, shares);
   report(options, common, "voxels", shares, seconds);

@@ -7,7 +7,7 @@
 #include <optional>
 #include <stdexcept>
 
-#include "vdbmap/change/normal_finder.h"
+#include "vdbmap/change/incidence_finder.h"
 #include "vdbmap/core/option_check.h"
 #include "vdbmap/core/parallel.h"
 #include "vdbmap/core/ray_walk.h"
@@ -35,7 +35,7 @@ class RayEvidence::Walker {
  public:
   explicit Walker(RayEvidence& evidence)
       : evidence_(evidence), trust_(evidence.trust_), voxel_size_(evidence.voxel_size_), blocks_(evidence.space_) {
-    for (const Side& side : evidence.sides_) normals_.emplace_back(*side.map);
+    for (const Side& side : evidence.sides_) incidences_.emplace_back(*side.map);
   }
 
   void follow(const MeasuredRay& ray) {
@@ -53,13 +53,12 @@ class RayEvidence::Walker {
  private:
   // How far before its end the ray comes too near to the surface on which it ends.
   double margin_before(const Eigen::Vector3d& end) const {
-    double sine = std::max(kUnknownIncidence, std::abs(direction_.z()));
-    for (const NormalFinder& finder : normals_) {
-      const std::optional<Eigen::Vector3d> normal = finder.find(end);
-      if (!normal) continue;
-      sine = std::abs(normal->dot(direction_));
-      break;
+    std::optional<double> least;
+    for (const IncidenceFinder& finder : incidences_) {
+      const std::optional<double> sine = finder.sine_of_incidence(end, direction_);
+      if (sine) least = std::min(least.value_or(1), *sine);
     }
+    const double sine = least.value_or(std::max(kUnknownIncidence, std::abs(direction_.z())));
     return std::max(kSigmas * trust_.range_sigma, trust_.clearance / std::max(sine, 1e-3));
   }
 
@@ -144,7 +143,7 @@ class RayEvidence::Walker {
   const RayTrust& trust_;
   double voxel_size_;
   SeenBlockFinder blocks_;
-  std::vector<NormalFinder> normals_;
+  std::vector<IncidenceFinder> incidences_;
   Eigen::Vector3d origin_ = Eigen::Vector3d::Zero();     // of the ray that is followed
   Eigen::Vector3d direction_ = Eigen::Vector3d::Zero();  // unit
   double length_ = 0;                                    // [m]
