@@ -17,8 +17,8 @@ namespace vdbmap {
 /// per task.
 class IncidenceFinder {
  public:
-  /// Planarity from which a normal counts as known.
-  static constexpr double kMinPlanarity = 0.5;
+  /// Planarity from which a normal counts as known: at the edge of a plane a third is left.
+  static constexpr double kMinPlanarity = 0.3;
 
   explicit IncidenceFinder(const VoxelMap& map) {
     for (const VoxelLevel& level : map.levels) {

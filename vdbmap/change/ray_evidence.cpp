@@ -15,7 +15,7 @@
 namespace vdbmap {
 namespace {
 
-constexpr double kUnknownIncidence = 0.2;  // sine of the least angle to a surface of which nothing else is known
+constexpr double kUnknownIncidence = 0.1;  // sine of the least angle to a surface of which nothing else is known
 constexpr double kMinIncidence = 0.1;      // sine; rays along a surface do not tell whether it is there
 constexpr double kDiscReach = 2;           // squared Mahalanobis distance: to the edge of a disc filled evenly
 constexpr double kSigmas = 3;
