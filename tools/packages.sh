@@ -3,7 +3,7 @@
 
 build_packages=(
   cmake g++ ninja-build pkg-config
-  libceres-dev libcgal-dev libcli11-dev libeigen3-dev libembree-dev libjemalloc-dev libopenvdb-dev libpcap-dev libproj-dev libspdlog-dev libtbb-dev libxxhash-dev nlohmann-json3-dev
+  libceres-dev libcgal-dev libcli11-dev libcpp-httplib-dev libeigen3-dev libembree-dev libjemalloc-dev libmeshoptimizer-dev libopenvdb-dev libpcap-dev libproj-dev libspdlog-dev libtbb-dev libxxhash-dev nlohmann-json3-dev
   # The coordinate systems that PROJ knows.
   proj-data
   # OpenVDB's find module wants these; libopenvdb-dev does not depend on them.

@@ -18,12 +18,13 @@ Command evaluate_command();
 Command render_command();
 Command segment_command();
 Command simulate_command();
+Command web_command();
 
 std::vector<Command> all_commands() {
   return {
       build_command(),    info_command(),   query_command(),   check_command(),    export_command(),
       import_command(),   merge_command(),  log_command(),     odometry_command(), localize_command(),
-      evaluate_command(), render_command(), segment_command(), simulate_command(),
+      evaluate_command(), render_command(), segment_command(), simulate_command(), web_command(),
   };
 }
 
