@@ -1,21 +1,31 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include <chrono>
 #include <filesystem>
-#include <memory>
 #include <optional>
 #include <sstream>
 #include <stdexcept>
 #include <string>
+#include <thread>
 #include <vector>
 
 #include <CLI/Option.hpp>
+#include <CLI/Validators.hpp>
+#include <fcntl.h>
 #include <nlohmann/json.hpp>
 #include <spdlog/fmt/fmt.h>
+#include <spdlog/spdlog.h>
+#include <sys/wait.h>
+#include <unistd.h>
 
 #include "tools/cli/command.h"
 #include "tools/cli/output.h"
 #include "tools/cli/progress.h"
+#include "tools/cli/site_server.h"
+#include "tools/cli/stop_request.h"
+#include "vdbmap/io/file/atomic_folder.h"
+#include "vdbmap/web/default_page.h"
 #include "vdbmap/web/site.h"
+#include "vdbmap/web/site_folder.h"
 
 namespace vdbmap::cli {
 namespace {
@@ -25,6 +35,9 @@ struct WebCommandOptions {
   std::filesystem::path output;
   std::string epoch_names;
   SiteOptions site;
+  bool is_served = false;
+  bool is_opened = false;
+  ServerAddress address;
 };
 
 void add_options(CLI::App& app, WebCommandOptions& options) {
@@ -33,13 +46,22 @@ void add_options(CLI::App& app, WebCommandOptions& options) {
                  "one site, the earliest first")
       ->type_name("FILE|FOLDER...")
       ->required();
-  app.add_option("-o,--output", options.output, "Write the site to this folder")->type_name("FOLDER")->required();
+  app.add_option("-o,--output", options.output, "Write the site to this folder")->type_name("FOLDER");
   app.add_option("--epoch-names", options.epoch_names, "What the epochs are called: 2023-03,2023-09")
       ->type_name("NAME,...");
   app.add_option("--name", options.site.name, "Of the site; by default that of the last map")->type_name("TEXT");
   app.add_option("--geoid-offset", options.site.geoid_offset,
                  "Height of the geoid above the ellipsoid [m], where the map's heights are above the geoid, [0]")
       ->type_name("M");
+  app.add_flag("--serve", options.is_served,
+               "Serve the site until Ctrl-C; without --output it is made for that time only. MAPS may also be a site");
+  app.add_flag("--open", options.is_opened, "Open the served site in the browser");
+  app.add_option("--port", options.address.port, "To serve on, 0: any that is free, [8080]")
+      ->check(CLI::Range(0, 65535).description(""))
+      ->type_name("N");
+  app.add_option("--address", options.address.host,
+                 "To serve on, [127.0.0.1]: this computer alone; 0.0.0.0 lets every other one in")
+      ->type_name("HOST");
 }
 
 std::vector<std::string> names_of(const std::string& list) {
@@ -69,9 +91,11 @@ std::vector<SiteEpoch> site_epochs(const WebCommandOptions& options) {
   return epochs;
 }
 
-void report(const WebCommandOptions& options, const SiteWritten& site, double seconds, const CommonOptions& common) {
+void report(const WebCommandOptions& options, const std::filesystem::path& folder, const SiteWritten& site,
+            double seconds, const CommonOptions& common) {
+  if (common.json && options.is_served) return;  // the address is the result
   if (common.json) {
-    print_json({{"output", options.output.string()},
+    print_json({{"output", folder.string()},
                 {"voxels", site.num_voxels},
                 {"drawn_voxels", site.num_drawn},
                 {"tiles", site.num_tiles},
@@ -83,24 +107,89 @@ void report(const WebCommandOptions& options, const SiteWritten& site, double se
     return;
   }
   print_result(fmt::format("{}: {} voxels in {} tiles, {:.1f} bytes a voxel, {} files written, {} kept, in {:.1f} s\n",
-                           options.output.string(), site.num_voxels, site.num_tiles,
+                           folder.string(), site.num_voxels, site.num_tiles,
                            static_cast<double>(site.num_tile_bytes) / static_cast<double>(site.num_voxels),
                            site.num_files_written, site.num_files_kept, seconds));
 }
 
-ExitCode run(const WebCommandOptions& options, const CommonOptions& common) {
-  const auto start = std::chrono::steady_clock::now();
-  const std::vector<SiteEpoch> epochs = site_epochs(options);
+void check_options(const WebCommandOptions& options) {
+  if (options.output.empty() && !options.is_served)
+    throw std::invalid_argument("no --output and no --serve: nothing to do");
+  if (options.is_opened && !options.is_served) throw std::invalid_argument("--open needs --serve");
+}
+
+SiteOptions site_options(const WebCommandOptions& options) {
   SiteOptions site = options.site;
   if (site.name.empty()) site.name = default_name(options.maps.back());
+  const std::optional<std::filesystem::path> page = default_page();
+  if (page) {
+    site.page = *page;
+  } else {
+    spdlog::warn("vdbmap was built without its page: the site has tiles for other viewers only");
+  }
+  return site;
+}
+
+void write(const WebCommandOptions& options, const std::filesystem::path& folder, const CommonOptions& common) {
+  const auto start = std::chrono::steady_clock::now();
+  const std::vector<SiteEpoch> epochs = site_epochs(options);
+  SiteOptions site = site_options(options);
   std::optional<Progress> progress;
   site.on_tiles_begun = [&](std::size_t num_blocks) {
     progress.emplace("writing blocks of tiles", num_blocks, common);
   };
   site.on_block_done = [&] { progress->advance(); };
-  const SiteWritten written = write_site(options.output, epochs, site);
+  const SiteWritten written = write_site(folder, epochs, site);
   progress.reset();
-  report(options, written, std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count(), common);
+  if (!written.is_on_globe) spdlog::warn("the map has no EPSG code: the site is in local coordinates, on no globe");
+  report(options, folder, written, std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count(),
+         common);
+}
+
+// By the desktop's own choice of a program; where there is none, the address was printed.
+void open_in_browser(const std::string& url) {
+  const pid_t child = ::fork();
+  if (child == 0) {
+    const int nowhere = ::open("/dev/null", O_RDWR);
+    for (const int stream : {STDIN_FILENO, STDOUT_FILENO, STDERR_FILENO}) ::dup2(nowhere, stream);
+    ::execlp("xdg-open", "xdg-open", url.c_str(), static_cast<char*>(nullptr));
+    ::_exit(1);
+  }
+  int status = 0;
+  if (child < 0 || ::waitpid(child, &status, 0) != child || status != 0) {
+    spdlog::warn("no browser could be opened: open {} yourself", url);
+  }
+}
+
+void serve(const std::filesystem::path& folder, const WebCommandOptions& options, const CommonOptions& common) {
+  constexpr auto kWait = std::chrono::milliseconds(50);
+  const StopRequest stop;
+  const SiteServer server(folder, options.address);
+  if (common.json) {
+    print_json({{"url", server.url()}});
+  } else {
+    print_result(server.url() + " (Ctrl-C ends it)\n");
+  }
+  if (options.is_opened) open_in_browser(server.url());
+  while (!stop.is_made()) std::this_thread::sleep_for(kWait);
+}
+
+ExitCode run(const WebCommandOptions& options, const CommonOptions& common) {
+  check_options(options);
+  if (options.output.empty() && options.maps.size() == 1 && is_site(options.maps.front())) {
+    serve(options.maps.front(), options, common);
+    return ExitCode::kDone;
+  }
+  if (!options.output.empty()) {
+    write(options, options.output, common);
+    if (options.is_served) serve(options.output, options, common);
+    return ExitCode::kDone;
+  }
+  // Never committed, so that it goes however the command ends.
+  const AtomicFolder for_now(std::filesystem::temp_directory_path() / "vdbmap-site");
+  const std::filesystem::path folder = for_now.temporary_path() / "site";
+  write(options, folder, common);
+  serve(folder, options, common);
   return ExitCode::kDone;
 }
 
@@ -109,7 +198,9 @@ ExitCode run(const WebCommandOptions& options, const CommonOptions& common) {
 Command web_command() {
   return make_command<WebCommandOptions>("web", "Write a map as a page for the browser",
                                          "vdbmap web map.vdb -o site/\n"
-                                         "vdbmap web city/ -o site/ --epoch-names 2023-03,2023-09",
+                                         "vdbmap web city/ -o site/ --epoch-names 2023-03,2023-09\n"
+                                         "vdbmap web map.vdb --serve --open\n"
+                                         "vdbmap web site/ --serve --port 8000",
                                          add_options, run);
 }
 

@@ -26,14 +26,6 @@ std::string hash_of(std::string_view bytes) {
   return text.data();
 }
 
-bool is_site(const std::filesystem::path& folder) {
-  std::error_code missing;
-  const std::filesystem::path file = folder / kSiteFile;
-  if (!std::filesystem::is_regular_file(file, missing)) return false;
-  const auto json = nlohmann::json::parse(read_front(file, kMostSiteBytes), nullptr, false);
-  return json.is_object() && json.contains("format") && json["format"] == "vdbmap-site";
-}
-
 void write_plain(const std::filesystem::path& path, std::string_view bytes) {
   errno = 0;
   std::ofstream file(path, std::ios::binary);
@@ -43,6 +35,14 @@ void write_plain(const std::filesystem::path& path, std::string_view bytes) {
 }
 
 }  // namespace
+
+bool is_site(const std::filesystem::path& folder) {
+  std::error_code missing;
+  const std::filesystem::path file = folder / kSiteFile;
+  if (!std::filesystem::is_regular_file(file, missing)) return false;
+  const auto json = nlohmann::json::parse(read_front(file, kMostSiteBytes), nullptr, false);
+  return json.is_object() && json.contains("format") && json["format"] == "vdbmap-site";
+}
 
 void check_site_folder(const std::filesystem::path& folder) {
   std::error_code error;

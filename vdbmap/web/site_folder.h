@@ -14,6 +14,9 @@ namespace vdbmap {
 /// Name of the file that makes a folder a site, and says all about it.
 inline constexpr const char* kSiteFile = "site.json";
 
+/// Whether a folder is a site that we wrote.
+bool is_site(const std::filesystem::path& folder);
+
 /// Throws IoError (malformed) where a folder holds something, but no site of ours.
 void check_site_folder(const std::filesystem::path& folder);
 
