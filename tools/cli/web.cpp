@@ -49,6 +49,9 @@ void add_options(CLI::App& app, WebCommandOptions& options) {
   app.add_option("-o,--output", options.output, "Write the site to this folder")->type_name("FOLDER");
   app.add_option("--epoch-names", options.epoch_names, "What the epochs are called: 2023-03,2023-09")
       ->type_name("NAME,...");
+  app.add_option("--spaces", options.site.spaces,
+                 "Parking spaces and their states (GeoJSON of spaces or occupancy), a file an epoch, the latest last")
+      ->type_name("FILE...");
   app.add_option("--name", options.site.name, "Of the site; by default that of the last map")->type_name("TEXT");
   app.add_option("--geoid-offset", options.site.geoid_offset,
                  "Height of the geoid above the ellipsoid [m], where the map's heights are above the geoid, [0]")
@@ -83,11 +86,6 @@ std::vector<SiteEpoch> site_epochs(const WebCommandOptions& options) {
   for (const std::filesystem::path& map : options.maps) {
     for (const std::filesystem::path& epoch : epochs_of(map)) epochs.push_back({epoch, default_name(epoch)});
   }
-  const std::vector<std::string> names = names_of(options.epoch_names);
-  if (!names.empty() && names.size() != epochs.size()) {
-    throw std::invalid_argument(fmt::format("--epoch-names has {} names for {} epochs", names.size(), epochs.size()));
-  }
-  for (std::size_t i = 0; i < names.size(); ++i) epochs[i].name = names[i];
   return epochs;
 }
 
@@ -100,6 +98,7 @@ void report(const WebCommandOptions& options, const std::filesystem::path& folde
                 {"drawn_voxels", site.num_drawn},
                 {"tiles", site.num_tiles},
                 {"tile_bytes", site.num_tile_bytes},
+                {"spaces", site.num_spaces},
                 {"files_written", site.num_files_written},
                 {"files_kept", site.num_files_kept},
                 {"on_globe", site.is_on_globe},
@@ -120,13 +119,10 @@ void check_options(const WebCommandOptions& options) {
 
 SiteOptions site_options(const WebCommandOptions& options) {
   SiteOptions site = options.site;
+  site.epoch_names = names_of(options.epoch_names);
   if (site.name.empty()) site.name = default_name(options.maps.back());
   const std::optional<std::filesystem::path> page = default_page();
-  if (page) {
-    site.page = *page;
-  } else {
-    spdlog::warn("vdbmap was built without its page: the site has tiles for other viewers only");
-  }
+  if (page) site.page = *page;
   return site;
 }
 
@@ -141,6 +137,7 @@ void write(const WebCommandOptions& options, const std::filesystem::path& folder
   site.on_block_done = [&] { progress->advance(); };
   const SiteWritten written = write_site(folder, epochs, site);
   progress.reset();
+  if (site.page.empty()) spdlog::warn("vdbmap was built without its page: the site has tiles for other viewers only");
   if (!written.is_on_globe) spdlog::warn("the map has no EPSG code: the site is in local coordinates, on no globe");
   report(options, folder, written, std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count(),
          common);

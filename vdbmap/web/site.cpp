@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <bitset>
 #include <optional>
+#include <set>
 #include <stdexcept>
 #include <utility>
 
@@ -15,6 +16,7 @@
 #include "vdbmap/web/site_folder.h"
 #include "vdbmap/web/site_placement.h"
 #include "vdbmap/web/site_source.h"
+#include "vdbmap/web/site_spaces.h"
 #include "vdbmap/web/site_tiles.h"
 
 namespace vdbmap {
@@ -22,10 +24,13 @@ namespace {
 
 using Json = nlohmann::ordered_json;
 
+constexpr const char* kSpacesFile = "spaces.json";
+
 // An epoch that was written.
 struct EpochWritten {
   std::string id;
   std::string name;
+  std::string tileset;  // file of it
   SiteTiles tiles;
   bool has_age;
   bool has_label;
@@ -81,7 +86,7 @@ Json json_of(const EpochWritten& epoch) {
   return {{"id", epoch.id},
           {"name", epoch.name},
           {"date", date ? Json(*date) : Json()},
-          {"tileset", "tileset_" + epoch.id + ".json"},
+          {"tileset", epoch.tileset},
           {"voxels", epoch.tiles.num_voxels},
           {"drawn_voxels", drawn},
           {"points", epoch.tiles.num_points}};
@@ -158,16 +163,17 @@ std::string site_json(const SiteFrame& site, const std::vector<EpochWritten>& ep
         {"epoch", any_has(epochs, &EpochWritten::has_age)}}},
       {"label_scheme", text_of(site.label_scheme)},
       {"labels", labels_json(epochs, site.label_scheme)},
-      {"spaces", nullptr},
+      {"spaces", options.spaces.empty() ? Json() : Json(kSpacesFile)},
       {"attribution", nullptr},
   };
-  return json.dump(1) + "\n";
+  return json.dump(1, ' ', false, Json::error_handler_t::replace) + "\n";
 }
 
 EpochWritten write_epoch(const SiteSource& source, const std::string& id, const SiteEpoch& epoch, SiteFolder& folder,
                          const SitePlacement& placement, const SiteOptions& options) {
   EpochWritten written{id,
                        epoch.name.empty() ? id : epoch.name,
+                       "tileset_" + id + ".json",
                        write_tiles(source, folder, options.on_block_done),
                        source.has_channel("last_epoch"),
                        source.has_channel("label"),
@@ -179,7 +185,38 @@ EpochWritten write_epoch(const SiteSource& source, const std::string& id, const 
   return written;
 }
 
-SiteWritten summary_of(const std::vector<EpochWritten>& epochs, const SiteFolder& folder, bool is_on_globe) {
+// Further epochs of the last map, as many as there are more files of spaces than maps.
+void add_epochs_of_spaces(std::vector<EpochWritten>& epochs, std::size_t num_files) {
+  while (epochs.size() < num_files) {
+    epochs.push_back(epochs.back());
+    epochs.back().id = epochs.back().name = std::to_string(epochs.size());
+  }
+}
+
+void check_names(const std::vector<std::string>& names, std::size_t num_epochs) {
+  if (names.empty() || names.size() == num_epochs) return;
+  throw std::invalid_argument(std::to_string(names.size()) + " names for " + std::to_string(num_epochs) + " epochs");
+}
+
+std::size_t write_spaces(const SiteFrame& site, std::vector<EpochWritten>& epochs, const SiteOptions& options,
+                         const SiteFolder& folder) {
+  if (options.spaces.empty()) return 0;
+  const SpacesPlace place{site.frame, options.geoid_offset, bounds_of(epochs, site.grid.finest_voxel_size)};
+  add_epochs_of_spaces(epochs, options.spaces.size());
+  std::vector<std::pair<std::string, EpochSpaces>> spaces;
+  std::set<std::string> ids;
+  for (std::size_t i = 0; i < options.spaces.size(); ++i) {
+    const EpochWritten& epoch = epochs[epochs.size() - options.spaces.size() + i];
+    spaces.emplace_back(epoch.id, read_site_spaces(options.spaces[i], place));
+    for (const SiteSpace& space : spaces.back().second.spaces) ids.insert(space.id);
+    const std::string& date = spaces.back().second.date;
+    if (!date.empty()) epochs[epochs.size() - options.spaces.size() + i].name = date;
+  }
+  folder.put(kSpacesFile, spaces_json(spaces));
+  return ids.size();
+}
+
+SiteWritten summary_of(const std::vector<EpochWritten>& epochs, const SiteFolder& folder) {
   SiteWritten summary;
   for (const EpochWritten& epoch : epochs) {
     summary.num_voxels += epoch.tiles.num_voxels;
@@ -191,7 +228,6 @@ SiteWritten summary_of(const std::vector<EpochWritten>& epochs, const SiteFolder
   }
   summary.num_files_written = folder.num_written();
   summary.num_files_kept = folder.num_kept();
-  summary.is_on_globe = is_on_globe;
   return summary;
 }
 
@@ -202,6 +238,7 @@ SiteWritten write_site(const std::filesystem::path& folder, const std::vector<Si
   if (epochs.empty()) throw std::invalid_argument("a site needs a map");
   std::vector<SiteSource> sources;
   for (const SiteEpoch& epoch : epochs) sources.emplace_back(epoch.map);
+  check_names(options.epoch_names, std::max(epochs.size(), options.spaces.size()));
   const SiteFrame site = frame_of(sources.front());
   for (const SiteSource& source : sources) check_alike(site, source, sources.front());
   const SitePlacement placement(site.frame, options.geoid_offset);
@@ -215,9 +252,13 @@ SiteWritten write_site(const std::filesystem::path& folder, const std::vector<Si
     written.push_back(write_epoch(sources[i], std::to_string(i + 1), epochs[i], output, placement, options));
   }
   if (!options.page.empty()) output.put_folder(options.page);
+  SiteWritten summary = summary_of(written, output);
+  summary.is_on_globe = placement.is_on_globe();
+  summary.num_spaces = write_spaces(site, written, options, output);
+  for (std::size_t i = 0; i < options.epoch_names.size(); ++i) written[i].name = options.epoch_names[i];
   output.put(kSiteFile, site_json(site, written, placement, options));
   output.commit();
-  return summary_of(written, output, placement.is_on_globe());
+  return summary;
 }
 
 std::vector<std::filesystem::path> epochs_of(const std::filesystem::path& path) {
