@@ -15,6 +15,7 @@
 #include "tests/support/folders.h"
 #include "tests/support/glb_points.h"
 #include "tests/support/raw_files.h"
+#include "tests/support/run_command.h"
 #include "tests/support/sample_maps.h"
 #include "tests/support/threads.h"
 #include "tests/support/tileset_tiles.h"
@@ -391,6 +392,91 @@ TEST_F(SiteTest, OfWhatCannotBeShownIsRefusedAndTheFormerSiteStays) {
   for (const auto& entry : std::filesystem::directory_iterator(folder_.path())) {
     EXPECT_TRUE(entry.path().filename() == "site" || entry.path().extension() == ".vdb") << entry.path();
   }
+}
+
+TEST_F(SiteTest, FarFromTheOriginLevelsGoOnUntilOneTileIsLeft) {
+  PointCloud cloud;
+  for (int i = 0; i < 40; ++i) add_point(cloud, {3000 + 400 * i, 5000, i}, 9000, 50);  // 300 m to 1860 m
+  BuildOptions options = test::anchored(test::kUtm);
+  options.voxel_sizes = {kEdge, 1};
+  options.epsg = 25832;
+  const std::filesystem::path site = write("site", {saved("map.vdb", build_map(cloud, options))});
+  const nlohmann::json json = nlohmann::json::parse(test::read_raw(site / "site.json"));
+  EXPECT_EQ(json["levels"].size(), 8U) << "2048 m are 160 voxels of 12.8 m";
+  EXPECT_EQ(json["levels"].back(), 12.8);
+  const auto levels = points_of_levels(site / "tileset_1.json");
+  for (const auto& [voxel_size, points] : levels) {
+    std::set<VoxelIndex> parents;
+    const int factor = static_cast<int>(std::lround(voxel_size / kEdge));
+    for (int i = 0; i < 40; ++i) parents.insert({(3000 + 400 * i) / factor, 5000 / factor, i / factor});
+    EXPECT_EQ(points.size(), parents.size()) << voxel_size;
+    for (const VoxelIndex& voxel : parents) EXPECT_TRUE(points.contains(voxel)) << voxel_size << voxel;
+  }
+  std::size_t num_roots = 0;
+  for (const test::TilesetTile& tile : test::tiles_of_tileset(site / "tileset_1.json"))
+    num_roots += tile.parent ? 0 : 1;
+  EXPECT_EQ(num_roots, 1U);
+}
+
+TEST_F(SiteTest, SpacesMayHaveMoreEpochsThanMaps) {
+  const std::filesystem::path map = saved("map.vdb", street());
+  const auto file = [&](const std::string& name, const std::string& state, const std::string& date) {
+    std::ofstream(folder_ / name)
+        << R"({"type": "FeatureCollection", "crs": {"properties": {"name": "EPSG:25832"}}, "features": [{"type": "Feature",
+               "geometry": {"type": "Polygon", "coordinates": [[[548864, 5804032], [548869, 5804032], [548869, 5804034]]]},
+               "properties": {"id": "1", "state": ")"
+        << state << R"(", "date": ")" << date << "\"}}]}";
+    return folder_ / name;
+  };
+  SiteOptions options;
+  options.spaces = {file("a.geojson", "occupied", "2023-03-01"), file("b.geojson", "vacant", "2023-09-01")};
+  EXPECT_EQ(write_site(folder_ / "site", {{map, "map"}}, options).num_spaces, 1U);
+  nlohmann::json json = nlohmann::json::parse(test::read_raw(folder_ / "site" / "site.json"));
+  ASSERT_EQ(json["epochs"].size(), 2U);
+  EXPECT_EQ(json["epochs"][0]["tileset"], json["epochs"][1]["tileset"]);
+  EXPECT_EQ(json["epochs"][1]["date"], "2023-09-01");
+  EXPECT_EQ(json["spaces"], "spaces.json");
+  const nlohmann::json bounds = json["bounds"];
+  json = nlohmann::json::parse(test::read_raw(folder_ / "site" / "spaces.json"));
+  EXPECT_EQ(json["spaces"][0]["states"][1]["state"], "vacant");
+  EXPECT_EQ(json["spaces"][0]["polygon"][0][2], bounds["min"][2]) << "the lowest of the map";
+  options.epoch_names = {"one"};
+  EXPECT_THROW(write_site(folder_ / "site", {{map, "map"}}, options), std::invalid_argument);
+}
+
+// --- programs of others that read 3D Tiles: npm ci in tests/exchange installs them
+
+class TilesetTools : public SiteTest {
+ protected:
+  void SetUp() override {
+    const bool is_installed = std::filesystem::exists(kExchange + "node_modules/3d-tiles-tools") &&
+                              test::run_command("/usr/bin/env", {"node", "--version"}).exit_code == 0;
+    if (!is_installed) GTEST_SKIP() << "3d-tiles-tools is not installed (npm ci in tests/exchange)";
+  }
+
+  void expect_read(const std::filesystem::path& site) const {
+    const test::CommandResult result = test::run_command(
+        "/usr/bin/env",
+        {"node", kExchange + "tileset_check.mjs", kExchange + "node_modules", site.string(), "tileset_1.json"});
+    ASSERT_EQ(result.exit_code, 0) << result.err;
+    const nlohmann::json read = nlohmann::json::parse(result.out);
+    EXPECT_EQ(read["tiles"], written_.num_tiles);
+    std::size_t num_points = 0;
+    for (const auto& [voxel_size, points] : points_of_levels(site / "tileset_1.json")) num_points += points.size();
+    EXPECT_EQ(read["points"], num_points);
+  }
+
+  const std::string kExchange = VDBMAP_SOURCE_DIR "/tests/exchange/";
+};
+
+TEST_F(TilesetTools, FindNothingWrongInASite) { expect_read(write("site", {saved("map.vdb", street())})); }
+
+TEST_F(TilesetTools, FindNothingWrongInOneOfManyTilesWithoutColours) {
+  PointCloud cloud;  // a point in each of 28 x 28 tiles: tilesets in tilesets
+  for (int i = 0; i < 28 * 28; ++i) cloud.positions.emplace_back(16.0 * (i % 28) + 1, 16.0 * (i / 28) + 1, i % 7);
+  const std::filesystem::path site = write("site", {saved("map.vdb", test::fine_map_of(cloud))});
+  EXPECT_TRUE(std::filesystem::exists(site / "subtrees"));
+  expect_read(site);
 }
 
 }  // namespace
