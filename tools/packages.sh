@@ -3,14 +3,16 @@
 
 build_packages=(
   cmake g++ ninja-build pkg-config
-  libceres-dev libcgal-dev libcli11-dev libeigen3-dev libembree-dev libjemalloc-dev libopenvdb-dev libpcap-dev libspdlog-dev libtbb-dev libxxhash-dev nlohmann-json3-dev
+  libceres-dev libcgal-dev libcli11-dev libcpp-httplib-dev libeigen3-dev libembree-dev libjemalloc-dev libmeshoptimizer-dev libopenvdb-dev libpcap-dev libproj-dev libspdlog-dev libtbb-dev libxxhash-dev nlohmann-json3-dev
+  # The coordinate systems that PROJ knows.
+  proj-data
   # OpenVDB's find module wants these; libopenvdb-dev does not depend on them.
   libblosc-dev libboost-iostreams-dev zlib1g-dev
   # Pictures and their letters; the CMake config of OpenImageIO wants its tools too.
   fonts-dejavu-core libopenimageio-dev openimageio-tools
 )
 test_packages=(libgmock-dev libgtest-dev libpng-dev)
-# For laz-perf, which ours is compared with (tests/exchange/package.json); other distributions of Node.js bring npm along.
+# For the programs from npm that ours are compared with (tests/exchange/package.json); other distributions of Node.js bring npm along.
 command -v npm > /dev/null || test_packages+=(nodejs npm)
 benchmark_packages=(jq libbenchmark-dev time)
 ci_packages=(blender clang-format python3-numpy python3-openvdb python3-torch)

@@ -4,6 +4,7 @@ find_package(Ceres REQUIRED)
 find_package(Eigen3 REQUIRED NO_MODULE)
 find_package(TBB REQUIRED CONFIG)
 find_package(ZLIB REQUIRED)
+find_package(meshoptimizer REQUIRED)
 
 # OpenVDB ships a find module only, in a folder of its own; it leaves BUILD_SHARED_LIBS changed.
 set(VDBMAP_SHARED_LIBS ${BUILD_SHARED_LIBS})
@@ -18,4 +19,5 @@ set(BUILD_SHARED_LIBS ${VDBMAP_SHARED_LIBS})
 find_package(PkgConfig REQUIRED)
 pkg_check_modules(PCAP REQUIRED IMPORTED_TARGET libpcap)
 pkg_check_modules(XXHASH REQUIRED IMPORTED_TARGET libxxhash)
+pkg_check_modules(PROJ REQUIRED IMPORTED_TARGET proj)
 pkg_check_modules(GMP REQUIRED IMPORTED_TARGET gmp)

@@ -181,8 +181,11 @@ class ParentAssembly {
 }  // namespace
 
 VoxelLevel coarsen(const VoxelLevel& fine, std::int32_t factor) {
+  return coarsen(fine, factor, factor / voxels_per_metre(fine.voxel_size()));
+}
+
+VoxelLevel coarsen(const VoxelLevel& fine, std::int32_t factor, double voxel_size) {
   constexpr std::size_t kParentsAtOnce = std::size_t{1} << 16;  // between being made and being added
-  const double voxel_size = factor / voxels_per_metre(fine.voxel_size());
   const std::vector<PartOfParent> parts = list_parts(fine, factor);
   const std::vector<std::uint32_t> first = first_parts(parts);
   const std::size_t num_parents = first.size() - 1;

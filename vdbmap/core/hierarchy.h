@@ -12,6 +12,9 @@ namespace vdbmap {
 /// children with most points, earliest first epoch, latest last epoch.
 VoxelLevel coarsen(const VoxelLevel& fine, std::int32_t factor);
 
+/// The same for voxels of `voxel_size` [m], which need not be a size that maps may have.
+VoxelLevel coarsen(const VoxelLevel& fine, std::int32_t factor, double voxel_size);
+
 /// Appends the levels of voxel_sizes[1], voxel_sizes[2], ... to a map that has the finest level alone.
 void add_coarser_levels(VoxelMap& map, const std::vector<double>& voxel_sizes);
 
