@@ -90,6 +90,7 @@ Json json_of(const OccupancyRecord& record) {
     spaces.push_back(state_of(record, i));
   }
   return {{"place", record.place},
+          {"map", record.map_name},
           {"date", text_or_null(record.date)},
           {"rule", record.rule.as_paper ? "paper" : "rays"},
           {"spaces_counted", street.num_spaces()},

@@ -2,27 +2,13 @@
 #pragma once
 
 #include <string>
-#include <vector>
 
 #include <nlohmann/json_fwd.hpp>
 
 #include "parking/exchange/spaces_file.h"
-#include "parking/occupancy/occupancy.h"
-#include "parking/spaces/parking_space.h"
-#include "vdbmap/core/voxel_map.h"
+#include "parking/occupancy/occupancy_record.h"
 
 namespace vdbmap::parking {
-
-/// What is known of the spaces of a street in one epoch.
-struct OccupancyRecord {
-  std::string place;  ///< name of the city or street
-  std::string date;   ///< ISO 8601, of the epoch; empty: not known
-  MapFrame frame;
-  OccupancyRule rule;
-  std::vector<ParkingSpace> spaces;
-  std::vector<SpaceOccupancy> states;  ///< one a space
-  std::vector<Vehicle> vehicles;       ///< that the evidence speaks of
-};
 
 /// All that is known, for programs.
 nlohmann::ordered_json json_of(const OccupancyRecord& record);

@@ -30,7 +30,7 @@ bool has_other_things(const SpaceEvidence& evidence, const OccupancyRule& rule) 
 std::string reason_unknown(const SpaceEvidence& evidence, const OccupancyRule& rule) {
   std::ostringstream text;
   if (!evidence.is_in_map) return "the map has no ground there";
-  if (evidence.vehicle_points > evidence.neighbor_points) {
+  if (evidence.vehicle_points - evidence.neighbor_points > rule.stray_points) {
     text << "too little of a vehicle: " << evidence.vehicle_points - evidence.neighbor_points << " points in "
          << evidence.num_with_vehicle << " columns";
   } else if (evidence.num_passed == 0) {
@@ -79,7 +79,7 @@ SpaceOccupancy judge(const SpaceEvidence& evidence, const OccupancyRule& rule) {
   if (own_points >= rule.vehicle_points && evidence.num_with_vehicle >= rule.vehicle_columns) {
     result.state = SpaceState::kOccupied;
     result.confidence = static_cast<double>(own_points) / (static_cast<double>(own_points) + kHalfSure);
-  } else if (is_seen_through(evidence, rule) && !has_other_things(evidence, rule)) {
+  } else if (is_seen_through(evidence, rule) && !has_other_things(evidence, rule) && own_points <= rule.stray_points) {
     result.state = SpaceState::kVacant;
     result.confidence = std::max(0.0, passed - share_of(evidence.num_with_other, evidence.num_columns));
   } else {

@@ -87,6 +87,28 @@ void add_candidates(std::vector<ParkingSpace>& spaces, std::vector<ParkingSpace>
   }
 }
 
+// The rows of spaces, without new ones in the lane.
+std::vector<KerbRow> drop_from_lane(std::vector<ParkingSpace>& spaces, const GroundPlan& ground,
+                                    std::vector<std::string>& doubts) {
+  std::vector<KerbRow> rows = find_kerb_rows(spaces, ground);
+  std::vector<bool> is_dropped(spaces.size(), false);
+  for (const KerbRow& row : rows) {
+    if (!is_in_lane(row, rows, spaces)) continue;
+    for (const std::size_t i : row.spaces) is_dropped[i] = spaces[i].id.empty();
+  }
+  if (std::ranges::count(is_dropped, true) == 0) return rows;
+  std::vector<ParkingSpace> kept;
+  for (std::size_t i = 0; i < spaces.size(); ++i) {
+    if (is_dropped[i]) {
+      doubts.emplace_back("stands in the lane");
+    } else {
+      kept.push_back(std::move(spaces[i]));
+    }
+  }
+  spaces = std::move(kept);
+  return find_kerb_rows(spaces, ground);
+}
+
 }  // namespace
 
 FoundSpaces find_spaces(const VoxelLevel& level, const FindSpacesOptions& options) {
@@ -113,27 +135,34 @@ FoundSpaces find_spaces(const VoxelLevel& level, const FindSpacesOptions& option
     }
   }
 
-  std::vector<ParkingSpace> known_candidates, all;
   for (std::size_t i = 0; i < spaces.size(); ++i) {
     if (is_taken[i]) spaces[i].history.push_back({options.date, SpaceState::kOccupied});
-    result.num_new += i >= num_known ? 1 : 0;
-    result.num_seen_again += i < num_known && is_taken[i] ? 1 : 0;
-    (spaces[i].is_candidate ? known_candidates : all).push_back(std::move(spaces[i]));
   }
-  const std::vector<KerbRow> rows = find_kerb_rows(all, ground);
+  std::vector<ParkingSpace> known_candidates, all;
+  for (ParkingSpace& space : spaces) (space.is_candidate ? known_candidates : all).push_back(std::move(space));
+  const std::vector<KerbRow> rows = drop_from_lane(all, ground, result.doubts);
   describe(all, rows);
   FreeIds ids(options.known);
+  std::vector<ParkingSpace> in_order;
+  for (ParkingSpace& space : all) {
+    if (!space.id.empty()) in_order.push_back(space);
+  }
+  result.num_seen_again = static_cast<std::size_t>(
+      std::count(is_taken.begin(), is_taken.begin() + static_cast<std::ptrdiff_t>(num_known), true));
+  std::vector<ParkingSpace> candidates = find_free_kerb(all, rows, ground);
   for (const KerbRow& row : rows) {
     for (const std::size_t i : row.spaces) {
-      if (all[i].id.empty()) all[i].id = ids.next();
+      if (!all[i].id.empty()) continue;
+      in_order.push_back(all[i]);
+      in_order.back().id = ids.next();
+      ++result.num_new;
     }
   }
-  std::vector<ParkingSpace> candidates = find_free_kerb(all, rows, ground);
-  add_candidates(all, std::move(known_candidates), std::move(candidates));
-  for (ParkingSpace& space : all) {
+  add_candidates(in_order, std::move(known_candidates), std::move(candidates));
+  for (ParkingSpace& space : in_order) {
     if (space.id.empty()) space.id = ids.next();
   }
-  result.spaces = std::move(all);
+  result.spaces = std::move(in_order);
   return result;
 }
 

@@ -27,8 +27,8 @@ struct FoundSpaces {
 
 /// Spaces as in the paper: where vehicles stand in a labelled map (Mortazavi 2023, section 4). A vehicle that shares
 /// half of its area, or of the space's, with a known space stands in it; one that shares a fifth makes no new one. Free
-/// kerb between spaces that is long enough for a car is offered as candidates. New ids are numbers that no known space
-/// has, row by row. Throws std::invalid_argument where the level has no labels.
+/// kerb between spaces that is long enough for a car is offered as candidates. Vehicles in the lane make no space. New
+/// ids are numbers that no known space has, row by row. Throws std::invalid_argument where the level has no labels.
 FoundSpaces find_spaces(const VoxelLevel& level, const FindSpacesOptions& options = {});
 
 /// Two spaces that lie on each other, by their numbers, and the shared part of the smaller one's area.

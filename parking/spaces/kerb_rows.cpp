@@ -7,6 +7,7 @@
 #include <map>
 #include <numbers>
 #include <numeric>
+#include <optional>
 
 #include <Eigen/Eigenvalues>
 
@@ -24,6 +25,8 @@ constexpr double kAcross = 1;          // [m]
 constexpr double kBend = 0.03;         // of the distance
 constexpr double kKerbHeight = 0.04;   // [m] less is the road's crown
 constexpr double kNearest = 0.4, kFarthest = 2.2, kAsFar = 4.5;  // [m] from a space: strips that are looked at
+constexpr std::size_t kFewestOfKerb = 3;                         // spaces
+constexpr double kBesideKerb = 1.8;                              // [m] across: less is the same kerb
 constexpr double kOtherRowFrom = 4, kOtherRowTo = 16;            // [m] across the road
 
 double angle_between(double a, double b) { return std::abs(std::remainder(a - b, pi)); }
@@ -37,9 +40,9 @@ Eigen::Vector2d forward(Eigen::Vector2d direction) {
   return (is_north ? direction.y() < 0 : direction.x() < 0) ? Eigen::Vector2d(-direction) : direction;
 }
 
-// Where the street goes around a space: the direction in which spaces are spread, else that of the cars themselves.
-Eigen::Vector2d street_direction(std::span<const Eigen::Vector2d> middles, const ParkingSpace& space,
-                                 const Eigen::Vector2d& place) {
+// Where spaces are spread around a place; nothing where they are in no direction.
+std::optional<Eigen::Vector2d> spread_direction(std::span<const Eigen::Vector2d> middles,
+                                                const Eigen::Vector2d& place) {
   Eigen::Vector2d mean = Eigen::Vector2d::Zero();
   Eigen::Matrix2d scatter = Eigen::Matrix2d::Zero();
   double count = 0;
@@ -52,10 +55,34 @@ Eigen::Vector2d street_direction(std::span<const Eigen::Vector2d> middles, const
   }
   const Eigen::SelfAdjointEigenSolver<Eigen::Matrix2d> solver(scatter);
   const Eigen::Vector2d squares = solver.eigenvalues();
-  if (squares[1] > 0 && squares[1] >= kLongerThanWide * kLongerThanWide * squares[0]) {
-    return forward(solver.eigenvectors().col(1));
+  if (!(squares[1] > 0 && squares[1] >= kLongerThanWide * kLongerThanWide * squares[0])) return std::nullopt;
+  return solver.eigenvectors().col(1);
+}
+
+// The mean heading of the spaces around a place that differs least from `heading`; nothing where none is near it.
+std::optional<double> mean_heading(std::span<const ParkingSpace> spaces, std::span<const Eigen::Vector2d> middles,
+                                   const Eigen::Vector2d& place, double heading) {
+  double sum = 0, count = 0;
+  for (std::size_t i = 0; i < spaces.size(); ++i) {
+    const double turned = std::remainder(spaces[i].heading - heading, pi);
+    if ((middles[i] - place).norm() > kStreetReach || std::abs(turned) > kAlongKerb) continue;
+    sum += turned;
+    ++count;
   }
-  return forward({std::cos(space.heading), std::sin(space.heading)});
+  return count > 0 ? std::optional(heading + sum / count) : std::nullopt;
+}
+
+// Where the street goes around a space: roughly where spaces are spread, which a car park beside it turns, and exactly
+// as the cars stand that are parallel to that, else across.
+Eigen::Vector2d street_direction(std::span<const ParkingSpace> spaces, std::span<const Eigen::Vector2d> middles,
+                                 std::size_t number) {
+  const Eigen::Vector2d& place = middles[number];
+  const auto spread = spread_direction(middles, place);
+  const double heading = spread ? heading_of(*spread) : spaces[number].heading;
+  const auto along = mean_heading(spaces, middles, place, heading);
+  const auto across = along ? std::nullopt : mean_heading(spaces, middles, place, heading + pi / 2);
+  const double exact = along ? *along : across ? *across - pi / 2 : heading;
+  return forward({std::cos(exact), std::sin(exact)});
 }
 
 ParkingAngle angle_to(const ParkingSpace& space, const Eigen::Vector2d& street) {
@@ -157,12 +184,28 @@ double half_extent(const ParkingSpace& space, const Eigen::Vector2d& direction) 
   return (std::abs(std::cos(turned)) * space.length + std::abs(std::sin(turned)) * space.width) / 2;
 }
 
+bool is_in_lane(const KerbRow& row, std::span<const KerbRow> rows, std::span<const ParkingSpace> spaces) {
+  if (row.angle != ParkingAngle::kParallel || row.spaces.size() >= kFewestOfKerb) return false;
+  const Eigen::Vector2d place = middle_of(spaces[row.spaces.front()]), left = left_of(row.direction);
+  std::array<bool, 2> has_kerb = {false, false};
+  for (const KerbRow& other : rows) {
+    if (other.spaces.size() < kFewestOfKerb) continue;
+    for (const std::size_t i : other.spaces) {
+      const Eigen::Vector2d step = middle_of(spaces[i]) - place;
+      const double across = step.dot(left);
+      if (std::abs(step.dot(row.direction)) > kStreetReach / 2 || std::abs(across) > kOtherRowTo) continue;
+      if (std::abs(across) > kBesideKerb) has_kerb[across > 0 ? 0 : 1] = true;
+    }
+  }
+  return has_kerb[0] && has_kerb[1];
+}
+
 std::vector<KerbRow> find_kerb_rows(std::span<const ParkingSpace> spaces, const GroundPlan& ground) {
   std::vector<Eigen::Vector2d> middles, streets;
   std::vector<ParkingAngle> angles;
   for (const ParkingSpace& space : spaces) middles.push_back(middle_of(space));
   for (std::size_t i = 0; i < spaces.size(); ++i) {
-    streets.push_back(street_direction(middles, spaces[i], middles[i]));
+    streets.push_back(street_direction(spaces, middles, i));
     angles.push_back(angle_to(spaces[i], streets[i]));
   }
 

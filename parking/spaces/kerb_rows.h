@@ -24,6 +24,10 @@ struct KerbRow {
 /// lower than behind the kerb, where another row lies, and where more ground is seen. Sorted by their first spaces.
 std::vector<KerbRow> find_kerb_rows(std::span<const ParkingSpace> spaces, const GroundPlan& ground);
 
+/// Whether one or two vehicles stand between the kerbs of a street, rows of three or more on both of their sides: in
+/// the lane, where nobody parks.
+bool is_in_lane(const KerbRow& row, std::span<const KerbRow> rows, std::span<const ParkingSpace> spaces);
+
 /// Half of what a space takes along a direction [m].
 double half_extent(const ParkingSpace& space, const Eigen::Vector2d& direction);
 

@@ -219,7 +219,9 @@ ExitCode run(const OccupancyCommandOptions& options, const CommonOptions& common
 
   const VoxelMap map = load_labelled_map(options.map);
   parking::OccupancyRecord record;
-  record.place = options.outputs.city.city.empty() ? options.map.stem().string() : options.outputs.city.city;
+  record.map_name =
+      options.map.has_filename() ? options.map.stem().string() : options.map.parent_path().stem().string();
+  record.place = options.outputs.city.city.empty() ? record.map_name : options.outputs.city.city;
   record.frame = map.frame;
   record.rule = options.rule;
   record.spaces = parking::read_spaces(options.spaces, map.frame, options.outputs.geo);
@@ -237,7 +239,7 @@ ExitCode run(const OccupancyCommandOptions& options, const CommonOptions& common
   if (!is_anything_seen(later.evidence)) {
     spdlog::warn("{}: comes near none of the spaces, nothing is known of them", options.later.front().string());
   }
-  write_outputs(options.outputs, record, map, later.map);
+  write_outputs(options.outputs, record, map, later.map, ground);
   print_summary(options.outputs, record, common);
   const parking::StreetOccupancy street = parking::street_occupancy(record.spaces, record.states);
   return street.num_unknown < street.num_spaces() || street.num_spaces() == 0 ? ExitCode::kDone : ExitCode::kNo;

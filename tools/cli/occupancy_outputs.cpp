@@ -9,6 +9,7 @@
 #include <nlohmann/json.hpp>
 #include <spdlog/fmt/fmt.h>
 
+#include "parking/report/occupancy_report.h"
 #include "tools/cli/geo_output.h"
 #include "tools/cli/map_output.h"
 #include "tools/cli/output.h"
@@ -23,7 +24,13 @@ using Json = nlohmann::ordered_json;
 
 std::string text_of(const Json& json) { return json.dump(1, ' ', false, Json::error_handler_t::replace) + "\n"; }
 
-std::string percent(double share) { return fmt::format("{:.0f} %", 100 * share); }
+// report.png, report_2.png, ...
+std::filesystem::path page_path(const std::filesystem::path& first, std::size_t number) {
+  if (number == 1) return first;
+  return first.parent_path() / (first.stem().string() + "_" + std::to_string(number) + first.extension().string());
+}
+
+std::string percent_text(double share) { return fmt::format("{:.0f} %", 100 * share); }
 
 }  // namespace
 
@@ -66,7 +73,7 @@ void check_outputs(const OccupancyOutputs& outputs, const std::vector<std::files
 }
 
 void write_outputs(const OccupancyOutputs& outputs, const parking::OccupancyRecord& record, const VoxelMap& map,
-                   const VoxelMap& later) {
+                   const VoxelMap& later, const parking::GroundPlan& ground) {
   parking::CityOptions city = outputs.city;
   city.geoid_offset = outputs.geo.geoid_offset;
   std::vector<std::pair<std::filesystem::path, std::string>> files;
@@ -74,9 +81,10 @@ void write_outputs(const OccupancyOutputs& outputs, const parking::OccupancyReco
   if (outputs.csv) files.emplace_back(*outputs.csv, parking::csv_of(record, outputs.geo));
   if (outputs.curbs) files.emplace_back(*outputs.curbs, text_of(parking::curb_data_of(record, city)));
   if (outputs.fiware) files.emplace_back(*outputs.fiware, text_of(parking::fiware_of(record, city)));
-  static_cast<void>(map);
-  static_cast<void>(later);
+  std::vector<Image> pages;
+  if (outputs.report) pages = parking::draw_report(record, map, later, ground);
   write_json(outputs.json, parking::json_of(record));
+  for (std::size_t i = 0; i < pages.size(); ++i) write_picture(page_path(*outputs.report, i + 1), pages[i]);
   for (const auto& [file, text] : files) write_file(file, text);
 }
 
@@ -91,8 +99,8 @@ void print_summary(const OccupancyOutputs& outputs, const parking::OccupancyReco
   }
   std::string text = fmt::format("{}: {} spaces: {} occupied, {} vacant, {} unknown\n", outputs.json.string(),
                                  street.num_spaces(), street.num_occupied, street.num_vacant, street.num_unknown);
-  text += fmt::format("occupancy  {} to {}", percent(street.low()), percent(street.high()));
-  if (street.known()) text += fmt::format(", {} of the spaces that are known", percent(*street.known()));
+  text += fmt::format("occupancy  {} to {}", percent_text(street.low()), percent_text(street.high()));
+  if (street.known()) text += fmt::format(", {} of the spaces that are known", percent_text(*street.known()));
   const parking::StreetTurnover change = parking::turnover(record.spaces, record.states, record.date);
   text += fmt::format("\nchanged    {} of {} spaces known in both epochs: {} became vacant, {} occupied\n",
                       change.num_left + change.num_came, change.num_known, change.num_left, change.num_came);

@@ -31,7 +31,7 @@ void check_outputs(const OccupancyOutputs& outputs, const std::vector<std::files
 
 /// Writes what was asked for, each file atomically; all are made before the first is written.
 void write_outputs(const OccupancyOutputs& outputs, const parking::OccupancyRecord& record, const VoxelMap& map,
-                   const VoxelMap& later);
+                   const VoxelMap& later, const parking::GroundPlan& ground);
 
 /// Prints the result, as JSON where asked for.
 void print_summary(const OccupancyOutputs& outputs, const parking::OccupancyRecord& record,
