@@ -82,15 +82,13 @@ DriveEvidence::DriveEvidence(const VoxelMap& map, std::span<const ParkingSpace> 
 
 DriveEvidence::~DriveEvidence() = default;
 
-void DriveEvidence::add(const PointCloud& points, std::span<const Eigen::Vector3d> origins) {
-  if (origins.size() != points.size()) throw std::invalid_argument("rays need an origin for each point");
-  std::vector<MeasuredRay> rays(points.size());
-  PointCloud near;
-  for (std::size_t i = 0; i < points.size(); ++i) {
-    rays[i] = {origins[i] - state_->anchor, points.positions[i] - state_->anchor};
-    if (state_->surroundings.contains(rays[i].end)) near.positions.push_back(points.positions[i]);
-  }
+void DriveEvidence::add(const PosedCloud& scan) {
+  const std::vector<MeasuredRay> rays = rays_of(scan, state_->anchor);
   state_->passed.add(rays);
+  PointCloud near;
+  for (const MeasuredRay& ray : rays) {
+    if (state_->surroundings.contains(ray.end)) near.positions.push_back(ray.end + state_->anchor);
+  }
   if (!near.empty()) state_->builder.add(near);
 }
 

@@ -12,7 +12,7 @@
 #include "parking/occupancy/space_evidence.h"
 #include "parking/segmentation/network_weights.h"
 #include "vdbmap/core/map_builder.h"
-#include "vdbmap/core/point_cloud.h"
+#include "vdbmap/core/posed_cloud.h"
 #include "vdbmap/core/visibility.h"
 #include "vdbmap/core/voxel_map.h"
 
@@ -33,8 +33,8 @@ class DriveEvidence {
   DriveEvidence(const VoxelMap& map, std::span<const ParkingSpace> spaces, const GroundPlan& ground);
   ~DriveEvidence();
 
-  /// Points of a scan [m, original system], and from where each was measured.
-  void add(const PointCloud& points, std::span<const Eigen::Vector3d> origins);
+  /// The next scan. Throws std::invalid_argument as rays_of() does.
+  void add(const PosedCloud& scan);
 
   /// Points that were kept: near spaces.
   std::size_t num_points() const;

@@ -5,6 +5,7 @@
 #include <optional>
 #include <stdexcept>
 #include <string>
+#include <tuple>
 #include <utility>
 #include <vector>
 
@@ -20,7 +21,7 @@
 #include "parking/segmentation/segment.h"
 #include "parking/spaces/find_spaces.h"
 #include "parking/spaces/iso_date.h"
-#include "registration/scan_rays.h"
+#include "tools/cli/build_inputs.h"
 #include "tools/cli/command.h"
 #include "tools/cli/geo_output.h"
 #include "tools/cli/labelled_map.h"
@@ -28,8 +29,8 @@
 #include "tools/cli/occupancy_outputs.h"
 #include "tools/cli/output.h"
 #include "tools/cli/pose_frame.h"
+#include "tools/cli/posed_drive.h"
 #include "tools/cli/progress.h"
-#include "tools/cli/read_scan.h"
 #include "tools/cli/reading.h"
 #include "tools/cli/scan_selection.h"
 #include "vdbmap/core/error.h"
@@ -51,14 +52,14 @@ struct OccupancyCommandOptions {
   bool has_moved_points = false;
   PoseFrame pose_frame = PoseFrame::kUnknown;
   ScanSelection selection;
-  ReadOptions read{.is_in_sensor_frame = true};
+  ReadOptions read;
 };
 
 void add_scan_options(CLI::App& app, OccupancyCommandOptions& options) {
   app.add_option("--poses", options.poses, "Poses of the scans in the map (KITTI or TUM), as of vdbmap localize")
       ->type_name("FILE");
   app.add_flag("--no-deskew", options.has_moved_points,
-               "Points lie where they were at the time of the scan's pose, whatever their time stamps say");
+               "The points of scans with times were moved to one time already");
   app.add_option("--weights", options.weights, "Weights of the network instead of those that come with the program")
       ->type_name("FILE");
   add_pose_frame(app, options.pose_frame);
@@ -82,7 +83,8 @@ void add_options(CLI::App& app, OccupancyCommandOptions& options) {
   add_occupancy_outputs(app, options.outputs);
   app.add_flag("--as-paper", options.rule.as_paper,
                "As in Mortazavi 2023: a space without a vehicle point is vacant, whether it was seen or not");
-  add_date(app, options.date, "the later epoch; default: the time stamps of the drive, where they are dates");
+  add_date(app, options.date,
+           "the later epoch; default: that of its map, or the time stamps of the drive where they are dates");
   add_scan_options(app, options);
 }
 
@@ -106,48 +108,30 @@ std::string date_of_time(double seconds) {
   return seconds > kEarliest && seconds < kLatest ? parking::date_of_seconds(std::llround(std::floor(seconds))) : "";
 }
 
-Trajectory read_poses(const OccupancyCommandOptions& options, const std::vector<ScanPlace>& scans) {
-  if (!options.poses) throw std::invalid_argument("scans need --poses, as vdbmap localize writes them");
-  const ScanPoses given = read_scan_poses(*options.poses, scans, options.pose_frame);
-  return selected_poses(given.poses, *options.poses, options.selection, scans.size());
-}
-
 LaterEpoch look_at_scans(const OccupancyCommandOptions& options, const CommonOptions& common, const VoxelMap& map,
                          const std::vector<parking::ParkingSpace>& spaces, const parking::GroundPlan& ground) {
-  ReadingReport reading;
-  const std::vector<ScanPlace> all = list_scans(list_inputs(options.later, reading), options.read);
-  const std::vector<ScanPlace> scans = select(all, options.selection);
-  if (scans.empty()) {
-    throw std::invalid_argument(fmt::format("{} chooses none of {} scans", options.selection.text(), all.size()));
-  }
-  const Trajectory poses = read_poses(options, scans);
+  if (!options.poses) throw std::invalid_argument("scans need --poses, as vdbmap localize writes them");
+  ReadingReport listed;
+  const std::vector<ScanPlace> all = list_scans(list_inputs(options.later, listed), options.read);
+  listed.warn();
+  const ChosenInputs chosen = choose_inputs(all, options.selection, options.poses, options.pose_frame);
   const auto network = parking::read_network(options.weights.empty() ? parking::default_weights() : options.weights);
 
   LaterEpoch later;
-  if (!poses.times.empty()) later.date = date_of_time(poses.times.front());
-  registration::ScanRayStream stream(poses, options.selection.every - 1, !options.has_moved_points);
-  parking::DriveEvidence drive(map, spaces, ground);
-  Progress progress("looking along rays", scans.size(), common);
-  ScanReader reader(options.read);
-  std::size_t num_lost = 0;
-  for (const ScanPlace& place : scans) {
-    std::string reason;
-    std::optional<PointCloud> scan = read_scan(reader, place, reading, reason);
-    if (!scan) {
-      spdlog::warn("{}", reason);
-      stream.pass_over();
-      continue;
-    }
-    if (later.date.empty() && !scan->times.empty()) later.date = date_of_time(scan->times.front());
-    const std::optional<registration::ScanRays> rays = stream.next(std::move(*scan));
-    if (rays && !rays->time_problem.empty()) spdlog::warn("{}: not deskewed: {}", place.name(), rays->time_problem);
-    if (rays) drive.add(rays->ends, rays->origins);
-    num_lost += rays ? 0 : 1;
-    progress.advance();
-  }
-  reading.warn();
-  if (num_lost > 0) spdlog::warn("{} of {} scans have no pose and say nothing", num_lost, scans.size());
-  std::tie(later.map, later.evidence) = drive.finish(*network);
+  if (!chosen.poses->poses.times.empty()) later.date = date_of_time(chosen.poses->poses.times.front());
+  Progress progress("looking along rays", chosen.inputs.size(), common);
+  PosedDrive drive(
+      chosen.inputs, all,
+      {.read = options.read, .range = std::nullopt, .deskews = !options.has_moved_points, .on_scan_done = [&progress] {
+         progress.advance();
+       }});
+  parking::DriveEvidence evidence(map, spaces, ground);
+  drive.for_each([&](const PosedCloud& scan) {
+    if (later.date.empty() && !scan.cloud.times.empty()) later.date = date_of_time(scan.cloud.times.front());
+    evidence.add(scan);
+  });
+  drive.reading().warn();
+  std::tie(later.map, later.evidence) = evidence.finish(*network);
   return later;
 }
 
@@ -161,6 +145,7 @@ LaterEpoch look_at_map(const OccupancyCommandOptions& options, const VoxelMap& m
   if (!(later.map.frame == map.frame)) {
     throw IoError::malformed(path, "has another anchor or EPSG code than " + options.map.string());
   }
+  later.date = date_of_map(path);
   const std::optional<Visibility> visibility = visibility_of(path, later.map);
   if (!visibility) {
     spdlog::warn("{}: does not say what rays passed: no space is known to be vacant by it", path.string());

@@ -110,6 +110,4 @@ void print_summary(const OccupancyOutputs& outputs, const parking::OccupancyReco
   print_result(text);
 }
 
-std::optional<Visibility> visibility_of(const std::filesystem::path&, const VoxelMap&) { return std::nullopt; }
-
 }  // namespace vdbmap::cli

@@ -10,7 +10,6 @@
 #include "parking/exchange/city_documents.h"
 #include "parking/exchange/occupancy_files.h"
 #include "tools/cli/common_options.h"
-#include "vdbmap/core/visibility.h"
 #include "vdbmap/core/voxel_map.h"
 
 namespace vdbmap::cli {
@@ -36,8 +35,5 @@ void write_outputs(const OccupancyOutputs& outputs, const parking::OccupancyReco
 /// Prints the result, as JSON where asked for.
 void print_summary(const OccupancyOutputs& outputs, const parking::OccupancyRecord& record,
                    const CommonOptions& common);
-
-/// What rays said of a map, where its file says so.
-std::optional<Visibility> visibility_of(const std::filesystem::path& path, const VoxelMap& map);
 
 }  // namespace vdbmap::cli

@@ -29,6 +29,7 @@
 #include "vdbmap/io/kitti/label_file.h"
 #include "vdbmap/io/points/point_reader.h"
 #include "vdbmap/io/vdb/map_file.h"
+#include "vdbmap/io/vdb/visibility_file.h"
 #include "vdbmap/store/city_folder.h"
 #include "vdbmap/store/city_window.h"
 
@@ -98,15 +99,18 @@ ExitCode run_map(const SegmentCommandOptions& options, const CommonOptions& comm
   if (options.inputs.size() != 1) throw std::invalid_argument("one map is segmented into one .vdb file");
   check_output(options.output.file, kMapKind, options.inputs);
   const auto network = weights_of(options);
-  VoxelMap map = load_map_or_city(options.inputs.front());
+  const std::filesystem::path& input = options.inputs.front();
+  VoxelMap map = load_map_or_city(input);
+  MapExtras extras;
+  if (!is_city(input)) extras = {load_visibility(input, map), load_history(input)};
   const auto start = std::chrono::steady_clock::now();
   try {
     parking::label_map(map, *network);
   } catch (const std::invalid_argument& error) {
-    throw IoError::malformed(options.inputs.front(), error.what());
+    throw IoError::malformed(input, error.what());
   }
   const double seconds = seconds_since(start);
-  save_map(options.output.file, map, options.output.save);
+  save_map(options.output.file, map, extras, options.output.save);
   Shares shares;
   count(map.finest().channels().labels, shares);
   report(options, common, "voxels", shares, seconds);

@@ -46,7 +46,7 @@ void add_options(CLI::App& app, SpacesCommandOptions& options) {
       ->type_name("FILE")
       ->expected(1)
       ->multi_option_policy(CLI::MultiOptionPolicy::TakeAll);
-  add_date(app, options.date, "the map");
+  add_date(app, options.date, "the map, [what its file says]");
   add_geo_options(app, options.geo);
 }
 
@@ -112,7 +112,8 @@ ExitCode run(const SpacesCommandOptions& options, const CommonOptions& common) {
   check_output(options.output, kGeoJsonKind, inputs);
   const VoxelMap map = load_labelled_map(options.map);
   const parking::FoundSpaces found =
-      parking::find_spaces(map.finest(), {.date = options.date, .known = read_known(options, map.frame)});
+      parking::find_spaces(map.finest(), {.date = options.date.empty() ? date_of_map(options.map) : options.date,
+                                          .known = read_known(options, map.frame)});
   warn_of_doubts(options, found.doubts);
   if (found.spaces.empty()) {
     spdlog::error("{}: holds no vehicles, so there are no spaces", options.map.string());

@@ -5,8 +5,8 @@
 #include <cstdint>
 #include <optional>
 
-#include "vdbmap/change/posed_cloud.h"
 #include "vdbmap/change/ray_evidence.h"
+#include "vdbmap/core/posed_cloud.h"
 #include "vdbmap/core/visibility.h"
 #include "vdbmap/core/voxel_map.h"
 

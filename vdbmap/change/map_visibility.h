@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #pragma once
 
-#include "vdbmap/change/posed_cloud.h"
 #include "vdbmap/change/ray_evidence.h"
+#include "vdbmap/core/posed_cloud.h"
 #include "vdbmap/core/visibility.h"
 #include "vdbmap/core/voxel_map.h"
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "vdbmap/change/posed_cloud.h"
+#include "vdbmap/core/posed_cloud.h"
 
 #include <stdexcept>
 #include <string>
