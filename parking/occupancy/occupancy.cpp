@@ -24,7 +24,8 @@ bool is_seen_through(const SpaceEvidence& evidence, const OccupancyRule& rule) {
 }
 
 bool has_other_things(const SpaceEvidence& evidence, const OccupancyRule& rule) {
-  return share_of(evidence.num_with_other, evidence.num_columns) > rule.other_share;
+  const double most = evidence.rays_through < rule.many_rays && evidence.rays_through > 0 ? 0 : rule.other_share;
+  return share_of(evidence.num_with_other, evidence.num_columns) > most;
 }
 
 std::string reason_unknown(const SpaceEvidence& evidence, const OccupancyRule& rule) {

@@ -18,6 +18,7 @@ struct OccupancyRule {
   double passed_share = 0.6;          ///< of the columns, that rays must have passed for a space to be vacant
   double low_share = 0.5;             ///< of the columns, that they must have passed below the windows of cars
   double other_share = 0.1;           ///< of the columns: more that hold other things, and it is not vacant
+  std::uint64_t many_rays = 1000;     ///< through it; of a space that fewer passed, things are hardly seen: none may be
   std::uint64_t stray_points = 2;     ///< of vehicles: more, and it is not vacant
   std::uint64_t vehicle_points = 10;  ///< inside, of vehicles that stand there, for it to be occupied
   std::size_t vehicle_columns = 3;    ///< in which they lie
