@@ -28,12 +28,27 @@ bool has_other_things(const SpaceEvidence& evidence, const OccupancyRule& rule) 
   return share_of(evidence.num_with_other, evidence.num_columns) > most;
 }
 
+// Whether a vehicle was there for a moment only: rays passed nearly everywhere, and much more often than it was met.
+bool has_passed_by(const SpaceEvidence& evidence, const OccupancyRule& rule) {
+  constexpr double kNearlyAll = 0.9;
+  const auto points = static_cast<double>(evidence.vehicle_points - evidence.neighbor_points);
+  return share_of(evidence.num_passed_low, evidence.num_columns) >= kNearlyAll &&
+         points < rule.standing_share * static_cast<double>(evidence.rays_through);
+}
+
+bool is_vehicle_there(const SpaceEvidence& evidence, const OccupancyRule& rule) {
+  return evidence.vehicle_points - evidence.neighbor_points >= rule.vehicle_points &&
+         evidence.num_with_vehicle >= rule.vehicle_columns && !has_passed_by(evidence, rule);
+}
+
 std::string reason_unknown(const SpaceEvidence& evidence, const OccupancyRule& rule) {
   std::ostringstream text;
   if (!evidence.is_in_map) return "the map has no ground there";
   if (evidence.vehicle_points - evidence.neighbor_points > rule.stray_points) {
-    text << "too little of a vehicle: " << evidence.vehicle_points - evidence.neighbor_points << " points in "
-         << evidence.num_with_vehicle << " columns";
+    text << (has_passed_by(evidence, rule) ? "a vehicle that passed by, or little of one: "
+                                           : "too little of a vehicle: ")
+         << evidence.vehicle_points - evidence.neighbor_points << " points in " << evidence.num_with_vehicle
+         << " columns";
   } else if (evidence.num_passed == 0) {
     return "not seen";
   } else if (!is_seen_through(evidence, rule)) {
@@ -77,7 +92,7 @@ SpaceOccupancy judge(const SpaceEvidence& evidence, const OccupancyRule& rule) {
   }
   const std::uint64_t own_points = evidence.vehicle_points - evidence.neighbor_points;
   const double passed = share_of(evidence.num_passed, evidence.num_columns);
-  if (own_points >= rule.vehicle_points && evidence.num_with_vehicle >= rule.vehicle_columns) {
+  if (is_vehicle_there(evidence, rule)) {
     result.state = SpaceState::kOccupied;
     result.confidence = static_cast<double>(own_points) / (static_cast<double>(own_points) + kHalfSure);
   } else if (is_seen_through(evidence, rule) && !has_other_things(evidence, rule) && own_points <= rule.stray_points) {

@@ -22,6 +22,9 @@ struct OccupancyRule {
   std::uint64_t stray_points = 2;     ///< of vehicles: more, and it is not vacant
   std::uint64_t vehicle_points = 10;  ///< inside, of vehicles that stand there, for it to be occupied
   std::size_t vehicle_columns = 3;    ///< in which they lie
+  /// Of the rays through a space whose columns are nearly all passed below windows, so many points at least, for it to
+  /// be occupied: fewer are left by a vehicle that passed by.
+  double standing_share = 0.02;
 
   /// Throws std::invalid_argument naming the value and what is allowed.
   void check() const;

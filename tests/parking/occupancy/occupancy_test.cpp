@@ -106,6 +106,16 @@ TEST(Occupancy, ANeighborThatStandsOverTheLineTakesOneSpace) {
   EXPECT_GT(evidence[1].neighbor_points, 0U);
 }
 
+TEST(Occupancy, AVehicleThatPassedByDoesNotTakeIt) {
+  LabelledStreet now = ground_alone();
+  for (double z = 0.4; z < 1.2; z += 0.1) now.add_patch({5, -0.9, z}, {2, 0.1}, SurfaceClass::kVehicle);
+  SpaceEvidence space = look(ground_alone(), now, rays_across(6, 0.4, 1.4))[1];
+  EXPECT_EQ(judge(space).state, SpaceState::kOccupied);  // as many points as rays
+  space.rays_through = 100 * space.vehicle_points;
+  EXPECT_EQ(judge(space).state, SpaceState::kUnknown);
+  EXPECT_NE(judge(space).reason.find("passed by"), std::string::npos);
+}
+
 TEST(Occupancy, OfAPlaceWithoutGroundNothingIsSaid) {
   LabelledStreet elsewhere;
   elsewhere.add_patch({100, 100, 0}, {10, 10}, SurfaceClass::kGround);
