@@ -1,7 +1,7 @@
 #!/usr/bin/env bash
 # SPDX-License-Identifier: GPL-3.0-or-later
-# tools/demo.sh: simulates a street, maps its first survey, finds the scans of another day in it with no first guess, and
-# compares them with the truth. tools/demo.sh DATA_FOLDER: the same with real scans, from a folder with velodyne/ and
+# tools/demo.sh: simulates a street, maps its first survey, finds the scans of another day in it with no first guess,
+# compares them with the truth, tells which parking spaces are taken, and brings the map up to date. tools/demo.sh DATA_FOLDER: the same with real scans, from a folder with velodyne/ and
 # poses.txt: a map of every second scan, the others found in it. Everything is written to demo/; demo/summary.txt holds
 # what the commands said.
 set -euo pipefail
@@ -53,6 +53,14 @@ draw_pictures() {
   vdbmap render demo/labelled.vdb -o demo/classes.png --view perspective --color-by label
 }
 
+# Spaces of the first survey's vehicles, and which of them are taken on the day of the scans in $1.
+look_for_parking() {
+  vdbmap spaces demo/labelled.vdb -o demo/spaces.geojson --date 2023-03-01
+  vdbmap occupancy demo/labelled.vdb demo/spaces.geojson "$1" --poses demo/poses.txt -o demo/occupancy.json \
+    --geojson demo/occupancy.geojson --csv demo/occupancy.csv --cds demo/curbs.json --fiware demo/fiware.json \
+    --report demo/report.png --city Hannover --date 2023-03-02
+}
+
 demonstrate_on_simulated_street() {
   local street=demo/street
   vdbmap simulate "$street" --seed 1 --ideal
@@ -61,6 +69,8 @@ demonstrate_on_simulated_street() {
   vdbmap localize demo/map.vdb "$street/epoch1/scans" -o demo/poses.txt --report demo/report.json
   vdbmap evaluate demo/poses.txt "$street/epoch1/poses.txt" --plot demo/evaluation.png
   draw_pictures "$street/epoch1/poses.txt"
+  look_for_parking "$street/epoch1/scans"
+  vdbmap update demo/map.vdb "$street/epoch1/scans" --poses demo/poses.txt --date 2023-03-02 -o demo/map2.vdb
 }
 
 demonstrate_on_real_scans() {

@@ -6,7 +6,7 @@ build_packages=(
   libceres-dev libcgal-dev libcli11-dev libcpp-httplib-dev libeigen3-dev libembree-dev libjemalloc-dev libmeshoptimizer-dev libopenvdb-dev libpcap-dev libproj-dev libspdlog-dev libtbb-dev libxxhash-dev nlohmann-json3-dev
   # The coordinate systems that PROJ knows.
   proj-data
-  # OpenVDB's find module wants these; libopenvdb-dev does not depend on them.
+  # OpenVDB's find module wants these; libopenvdb-dev does not depend on them. Boost's headers make UUIDs too.
   libblosc-dev libboost-iostreams-dev zlib1g-dev
   # Pictures and their letters; the CMake config of OpenImageIO wants its tools too.
   fonts-dejavu-core libopenimageio-dev openimageio-tools

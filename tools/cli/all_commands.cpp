@@ -18,14 +18,17 @@ Command localize_command();
 Command evaluate_command();
 Command render_command();
 Command segment_command();
+Command spaces_command();
+Command occupancy_command();
 Command web_command();
 Command simulate_command();
 
 std::vector<Command> all_commands() {
   return {
-      build_command(),  info_command(),    query_command(),  check_command(),    export_command(),   import_command(),
-      merge_command(),  log_command(),     update_command(), odometry_command(), localize_command(), evaluate_command(),
-      render_command(), segment_command(), web_command(),    simulate_command(),
+      build_command(),     info_command(),     query_command(),    check_command(),   export_command(),
+      import_command(),    merge_command(),    log_command(),      update_command(),  odometry_command(),
+      localize_command(),  evaluate_command(), render_command(),   segment_command(), spaces_command(),
+      occupancy_command(), web_command(),      simulate_command(),
   };
 }
 

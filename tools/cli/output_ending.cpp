@@ -32,6 +32,8 @@ const OutputKind kPosesKind = {"poses as text", {".txt"}};
 const OutputKind kPointsKind = {"points", {".ply", ".las", ".xyz"}};
 const OutputKind kLabelsKind = {"SemanticKITTI's labels", {".label"}};
 const OutputKind kJsonKind = {"JSON", {".json", ".txt"}};
+const OutputKind kGeoJsonKind = {"GeoJSON", {".geojson", ".json"}};
+const OutputKind kTableKind = {"a table", {".csv", ".txt"}};
 
 bool has_ending(const std::filesystem::path& output, const OutputKind& kind) {
   return std::ranges::count(kind.endings, ending_of(output)) > 0;

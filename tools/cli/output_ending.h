@@ -19,6 +19,8 @@ extern const OutputKind kPosesKind;    ///< KITTI and TUM trajectories
 extern const OutputKind kPointsKind;   ///< points
 extern const OutputKind kLabelsKind;   ///< classes of points
 extern const OutputKind kJsonKind;     ///< reports
+extern const OutputKind kGeoJsonKind;  ///< places
+extern const OutputKind kTableKind;    ///< tables
 
 /// Whether a name has one of the endings of a kind, in upper or lower case.
 bool has_ending(const std::filesystem::path& output, const OutputKind& kind);

@@ -95,25 +95,22 @@ double seconds_since(std::chrono::steady_clock::time_point start) {
   return std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
 }
 
-// Of a map in a file; the voxels stay the same.
-MapExtras extras_of(const std::filesystem::path& input, const VoxelMap& map) {
-  if (is_city(input)) return {};
-  return {load_visibility(input, map), load_history(input)};
-}
-
 ExitCode run_map(const SegmentCommandOptions& options, const CommonOptions& common) {
   if (options.inputs.size() != 1) throw std::invalid_argument("one map is segmented into one .vdb file");
   check_output(options.output.file, kMapKind, options.inputs);
   const auto network = weights_of(options);
-  VoxelMap map = load_map_or_city(options.inputs.front());
+  const std::filesystem::path& input = options.inputs.front();
+  VoxelMap map = load_map_or_city(input);
+  MapExtras extras;
+  if (!is_city(input)) extras = {load_visibility(input, map), load_history(input)};
   const auto start = std::chrono::steady_clock::now();
   try {
     parking::label_map(map, *network);
   } catch (const std::invalid_argument& error) {
-    throw IoError::malformed(options.inputs.front(), error.what());
+    throw IoError::malformed(input, error.what());
   }
   const double seconds = seconds_since(start);
-  save_map(options.output.file, map, extras_of(options.inputs.front(), map), options.output.save);
+  save_map(options.output.file, map, extras, options.output.save);
   Shares shares;
   count(map.finest().channels().labels, shares);
   report(options, common, "voxels", shares, seconds);
