@@ -7,15 +7,10 @@
 
 #include <Eigen/Geometry>
 
+#include "vdbmap/core/measured_ray.h"
 #include "vdbmap/core/voxel_map.h"
 
 namespace vdbmap::registration {
-
-/// A laser ray from the sensor to the point that it measured [m].
-struct MeasuredRay {
-  Eigen::Vector3d origin = Eigen::Vector3d::Zero();
-  Eigen::Vector3d end = Eigen::Vector3d::Zero();
-};
 
 /// A flat piece of surface.
 struct SurfacePiece {

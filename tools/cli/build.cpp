@@ -17,22 +17,38 @@
 #include "tools/cli/build_report.h"
 #include "tools/cli/city_output.h"
 #include "tools/cli/command.h"
+#include "tools/cli/epoch_date.h"
 #include "tools/cli/map_output.h"
 #include "tools/cli/number_list.h"
 #include "tools/cli/pose_frame.h"
+#include "tools/cli/posed_drive.h"
 #include "tools/cli/progress.h"
 #include "tools/cli/reading.h"
 #include "tools/cli/scan_selection.h"
+#include "tools/cli/survey_rays.h"
+#include "vdbmap/change/map_visibility.h"
+#include "vdbmap/core/error.h"
 #include "vdbmap/io/las/geodetic_codes.h"
 #include "vdbmap/io/map_from_files.h"
 #include "vdbmap/io/points/point_reader.h"
 #include "vdbmap/store/city_folder.h"
+#include "vdbmap/store/source_hash.h"
 
 namespace vdbmap::cli {
 namespace {
 
 constexpr int kMaxEpsg = 999'999;
 constexpr double kDefaultVoxelSize = 0.1;  // [m]
+
+// What is said of the rays by which the points were measured.
+struct RayOptions {
+  std::optional<std::filesystem::path> trajectory;
+  std::vector<double> lever_arm;
+  bool of_scans = false;  // whose poses are given
+  std::string date;
+
+  bool are_wanted() const { return trajectory || of_scans; }
+};
 
 struct BuildCommandOptions {
   std::vector<std::filesystem::path> inputs;
@@ -48,6 +64,7 @@ struct BuildCommandOptions {
   std::string label_scheme;
   std::optional<double> min_range;  // [m]
   std::optional<double> max_range;  // [m]
+  RayOptions rays;
   ReadOptions read;
   MapOutput output;
   CityOutput city;
@@ -100,6 +117,23 @@ void add_range_options(CLI::App& app, BuildCommandOptions& options, CLI::Option*
       ->needs(poses);
 }
 
+void add_ray_options(CLI::App& app, BuildCommandOptions& options, CLI::Option* poses) {
+  CLI::Option* trajectory =
+      app.add_option("--trajectory", options.rays.trajectory,
+                     "Where the surveying vehicle was (TUM, map coordinates, times of the points): the map then knows "
+                     "from the rays what is free")
+          ->type_name("FILE")
+          ->excludes(poses);
+  add_number_list(app, "--lever-arm", options.rays.lever_arm, 3, "X,Y,Z",
+                  "Of the scanner in the frame of the trajectory [m]")
+      ->default_str("0,0,0")
+      ->needs(trajectory);
+  app.add_flag("--visibility", options.rays.of_scans,
+               "With --poses: deskew scans with times, and keep from their rays what is free")
+      ->needs(poses);
+  add_epoch_date(app, options.rays.date);
+}
+
 void add_options(CLI::App& app, BuildCommandOptions& options) {
   app.add_option("INPUTS", options.inputs,
                  "Point files, and folders of them: PLY, PCD, LAS, LAZ, KITTI .bin, XYZ/CSV, .pcap")
@@ -109,6 +143,7 @@ void add_options(CLI::App& app, BuildCommandOptions& options) {
                                       "A pose for each scan (KITTI or TUM); without, the points are in map coordinates")
                            ->type_name("FILE");
   add_range_options(app, options, poses);
+  add_ray_options(app, options, poses);
   add_pose_frame(app, options.pose_frame);
   add_scan_selection(app, options.selection);
   add_map_options(app, options);
@@ -209,6 +244,61 @@ double seconds_since(std::chrono::steady_clock::time_point start) {
   return std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
 }
 
+// The places of the scans in their sequence, rays and all.
+MapExtras extras_of_survey(const VoxelMap& map, const ChosenInputs& chosen, const InputOptions& inputs,
+                           const RayOptions& rays, const CommonOptions& common) {
+  const Eigen::Vector3d lever_arm =
+      rays.lever_arm.empty() ? Eigen::Vector3d(Eigen::Vector3d::Zero()) : Eigen::Vector3d(rays.lever_arm.data());
+  Progress progress("following rays", chosen.inputs.size(), common);
+  InputOptions options = inputs;
+  options.on_scan_done = [&progress] { progress.advance(); };
+  SurveyRays survey(chosen.inputs, options, read_survey_track(*rays.trajectory, lever_arm));
+  MapExtras extras;
+  extras.visibility = find_visibility(map, [&](const auto& take) { survey.for_each(take); });
+  if (survey.num_without_ray() > 0) {
+    spdlog::warn("{}: {} of {} points are of times without a pose and have no ray", rays.trajectory->string(),
+                 survey.num_without_ray(), survey.num_points());
+  }
+  return extras;
+}
+
+MapHistory history_of(const ChosenInputs& chosen, const BuildCommandOptions& options) {
+  MapHistory history;
+  const std::int32_t epoch = options.epoch.value_or(0);
+  history.epochs.push_back({epoch, options.rays.date, {}});
+  history.sources = identify_sources(chosen.inputs);
+  for (MapSource& source : history.sources) source.epoch = epoch;
+  return history;
+}
+
+// Scans with poses: deskewed, as localize means their poses.
+MapFromFiles build_of_drive(PosedDrive& drive, const MapFromFilesOptions& files, const ChosenInputs& chosen) {
+  MapBuilder builder(files.build);
+  drive.for_each([&](const PosedCloud& posed) { builder.add(posed.cloud, posed.map_from_cloud); });
+  MapFromFiles built{builder.finish(), {}};
+  built.notes.num_points = num_points(built.map.finest());
+  built.notes.num_out_of_range = drive.num_out_of_range();
+  if (built.notes.num_points == 0) {
+    throw IoError::malformed(chosen.inputs.front().scan.file, "and the other scans hold no point within the range");
+  }
+  return built;
+}
+
+void run_with_rays_of_scans(const ChosenInputs& chosen, const std::vector<ScanPlace>& all,
+                            const MapFromFilesOptions& files, const ReadingReport& listed,
+                            const BuildCommandOptions& options, const CommonOptions& common) {
+  const auto start = std::chrono::steady_clock::now();
+  Progress progress("building from scans, then following rays", 2 * chosen.inputs.size(), common);
+  PosedDrive drive(chosen.inputs, all, {options.read, files.inputs.range, true, [&progress] { progress.advance(); }});
+  const MapFromFiles built = build_of_drive(drive, files, chosen);
+  const MapExtras extras{find_visibility(built.map, [&](const auto& take) { drive.for_each(take); }),
+                         history_of(chosen, options)};
+  drive.reading().warn();
+  const ReadingReport reading = complete(listed, built.notes, chosen, options);
+  save_map(options.output.file, built.map, extras, options.output.save);
+  print_built(built, options.output.file, {built.notes, chosen, reading, seconds_since(start)}, common.json);
+}
+
 void run_for_file(const ChosenInputs& chosen, const MapFromFilesOptions& files, const ReadingReport& listed,
                   const BuildCommandOptions& options, const CommonOptions& common) {
   const auto start = std::chrono::steady_clock::now();
@@ -216,7 +306,12 @@ void run_for_file(const ChosenInputs& chosen, const MapFromFilesOptions& files, 
   warn_of(built.notes, built.map.frame.epsg);
   warn_without_labels(options.label_scheme, !built.map.finest().channels().labels.empty());
   const ReadingReport reading = complete(listed, built.notes, chosen, options);
-  save_map(options.output.file, built.map, options.output.save);
+  MapExtras extras;
+  if (options.rays.trajectory) {
+    extras = extras_of_survey(built.map, chosen, files.inputs, options.rays, common);
+    extras.history = history_of(chosen, options);
+  }
+  save_map(options.output.file, built.map, extras, options.output.save);
   print_built(built, options.output.file, {built.notes, chosen, reading, seconds_since(start)}, common.json);
 }
 
@@ -260,19 +355,26 @@ BuildOptions checked_build_options(const BuildCommandOptions& options) {
 ExitCode run(const BuildCommandOptions& options, const CommonOptions& common) {
   const BuildOptions build_options = checked_build_options(options);
   range_of(options);
+  check_epoch_date(options.rays.date);
   ReadingReport listed;
   const std::vector<std::filesystem::path> files = list_inputs(options.inputs, listed);
   std::vector<std::filesystem::path> read_files = files;
   if (options.poses) read_files.push_back(*options.poses);
   if (options.labels) read_files.push_back(*options.labels);
+  if (options.rays.trajectory) read_files.push_back(*options.rays.trajectory);
   check_outputs(options, read_files);
-  ChosenInputs chosen =
-      choose_inputs(list_scans(files, options.read), options.selection, options.poses, options.pose_frame);
+  const std::vector<ScanPlace> all = list_scans(files, options.read);
+  ChosenInputs chosen = choose_inputs(all, options.selection, options.poses, options.pose_frame);
   if (options.labels) add_label_files(chosen.inputs, *options.labels);
   check_outputs(options, label_files(chosen.inputs));
   const MapFromFilesOptions input_options = files_options(build_options, options, common);
   if (options.makes_city()) {
+    if (options.rays.are_wanted())
+      throw std::invalid_argument("--trajectory and --visibility are for maps in one file");
     run_for_city(chosen, input_options, listed, options, common);
+  } else if (options.rays.of_scans) {
+    if (options.labels) throw std::invalid_argument("--labels and --visibility cannot be given together");
+    run_with_rays_of_scans(chosen, all, input_options, listed, options, common);
   } else {
     run_for_file(chosen, input_options, listed, options, common);
   }
@@ -287,6 +389,7 @@ Command build_command() {
       "vdbmap build street.las -o map.vdb\n"
       "vdbmap build velodyne/ --poses poses.txt --every 2 -o map.vdb\n"
       "vdbmap build sequences/00/velodyne --poses poses.txt --labels sequences/00/labels -o map.vdb\n"
+      "vdbmap build survey.laz --trajectory mapper.tum --date 2023-03-02 -o map.vdb\n"
       "vdbmap build a.ply b.ply --levels 0.05,0.5 --epsg 25832 --epoch 3 -o map.vdb\n"
       "vdbmap build survey/ -o city/ --epoch 1 --memory 1G\n"
       "vdbmap build more/ --into city/ --epoch 2",

@@ -111,8 +111,8 @@ void export_whole_map(const ExportCommandOptions& options, const CommonOptions& 
   check_whole_map_options(options);
   if (is_city_output(*options.points)) {
     const VoxelMap map = load_map_or_city(options.map);
-    const std::vector<CitySource> sources =
-        is_city(options.map) ? open_city(options.map).manifest.sources : std::vector<CitySource>();
+    const std::vector<MapSource> sources =
+        is_city(options.map) ? open_city(options.map).manifest.sources : std::vector<MapSource>();
     save_city(city_folder(*options.points), map, {}, sources);
     return print(*options.points, map.finest().size(), common);
   }

@@ -37,7 +37,7 @@ LogRow row_of(std::int32_t epoch, const CityManifest& manifest, std::set<std::st
   for (const CityTile& tile : manifest.tiles) {
     row.num_new_tiles += known_tiles.insert(tile_name(tile.id) + tile.hash).second ? 1 : 0;
   }
-  for (const CitySource& source : manifest.sources) row.num_new_sources += source.epoch == epoch ? 1 : 0;
+  for (const MapSource& source : manifest.sources) row.num_new_sources += source.epoch == epoch ? 1 : 0;
   return row;
 }
 
@@ -45,7 +45,7 @@ std::string text_of(const LogRow& row) {
   std::string text = fmt::format("epoch {}: {} points, {} voxels in {} tiles ({} of them new), {} sources\n", row.epoch,
                                  num_points(row.manifest), num_voxels(row.manifest).front(), row.manifest.tiles.size(),
                                  row.num_new_tiles, row.manifest.sources.size());
-  for (const CitySource& source : row.manifest.sources) {
+  for (const MapSource& source : row.manifest.sources) {
     if (source.epoch != row.epoch) continue;
     text += fmt::format("  {}: {} points\n", printable(source.name), source.num_points);
   }
@@ -54,7 +54,7 @@ std::string text_of(const LogRow& row) {
 
 nlohmann::ordered_json json_of(const LogRow& row) {
   auto sources = nlohmann::ordered_json::array();
-  for (const CitySource& source : row.manifest.sources) {
+  for (const MapSource& source : row.manifest.sources) {
     if (source.epoch != row.epoch) continue;
     sources.push_back({{"name", source.name}, {"hash", source.hash}, {"points", source.num_points}});
   }

@@ -75,18 +75,18 @@ VoxelMap merge_files(const std::vector<std::filesystem::path>& files, const Comm
 }
 
 // What the cities among the maps have counted. Of maps in one file that is not known.
-std::vector<CitySource> sources_of(const std::vector<std::filesystem::path>& maps) {
-  std::vector<CitySource> sources;
+std::vector<MapSource> sources_of(const std::vector<std::filesystem::path>& maps) {
+  std::vector<MapSource> sources;
   for (const std::filesystem::path& map : maps) {
     if (!is_city(map)) continue;
-    for (const CitySource& source : open_city(map).manifest.sources) {
-      if (std::ranges::count(sources, source.hash, &CitySource::hash) > 0) {
+    for (const MapSource& source : open_city(map).manifest.sources) {
+      if (std::ranges::count(sources, source.hash, &MapSource::hash) > 0) {
         throw IoError::malformed(map, "has counted " + source.name + ", as has a city before it");
       }
       sources.push_back(source);
     }
   }
-  std::ranges::sort(sources, {}, [](const CitySource& s) { return std::tie(s.epoch, s.name, s.hash); });
+  std::ranges::sort(sources, {}, [](const MapSource& s) { return std::tie(s.epoch, s.name, s.hash); });
   return sources;
 }
 
@@ -103,7 +103,7 @@ ExitCode run(const MergeOptions& options, const CommonOptions& common) {
   if (options.maps.size() < 2) throw std::invalid_argument("merge needs two maps or more");
   const bool makes_city = is_city_output(options.output.file);
   if (!makes_city) check_output(options.output.file, kMapKind, options.maps);
-  const std::vector<CitySource> sources = sources_of(options.maps);
+  const std::vector<MapSource> sources = sources_of(options.maps);
   const VoxelMap merged = merge_files(options.maps, common);
   if (makes_city) {
     print_city(save_city(city_folder(options.output.file), merged, options.output.save, sources), options, common);

@@ -8,100 +8,16 @@
 namespace vdbmap {
 namespace {
 
-// Without a branch, which a ray's way through the voxels would make mispredicted half of the time.
-constexpr bool both(bool a, bool b) { return a & b; }
-
 constexpr double kInfinity = std::numeric_limits<double>::infinity();
-
-/// A ray in units of voxels, with what every step needs.
-struct Path {
-  std::array<double, 3> origin;
-  std::array<double, 3> direction;
-  std::array<double, 3> inverse;  ///< infinite along an axis on which the ray stands still
-  std::array<double, 3> ahead;    ///< 1 where the ray runs up the axis, else 0: on which side it leaves a cell
-
-  Path(const Ray& ray, double voxel_size) {
-    const double voxels_per_metre = 1 / voxel_size;
-    for (int axis = 0; axis < 3; ++axis) {
-      const auto i = static_cast<std::size_t>(axis);
-      origin[i] = ray.origin[axis] * voxels_per_metre;
-      direction[i] = ray.direction[axis] == 0 ? 0.0 : ray.direction[axis] * voxels_per_metre;  // never -0
-      inverse[i] = 1 / direction[i];
-      ahead[i] = direction[i] < 0 ? 0 : 1;
-    }
-  }
-
-  /// Distance at which the ray crosses the plane at this place on the axis.
-  double crossing(std::size_t axis, double place) const {
-    return direction[axis] == 0 ? kInfinity : (place - origin[axis]) * inverse[axis];
-  }
-};
-
-/// How the ray came to where it is.
-struct Arrival {
-  double distance;
-  int axis = -1;  ///< of the face it came through last; -1: it began here
-};
-
-/// Walks cell by cell over the 2^kLog2Dim cells a side of a node, each 2^kLog2Size voxels a side. Steps have no branch
-/// that depends on the axis: processors would guess it wrong every other time.
-template <int kLog2Dim, int kLog2Size>
-class CellWalk {
- public:
-  CellWalk(const Path& path, const openvdb::Coord& node_origin, double distance) {
-    for (std::size_t axis = 0; axis < 3; ++axis) {
-      constexpr double size = 1 << kLog2Size;
-      const double from_corner = path.origin[axis] - node_origin[static_cast<int>(axis)];
-      // By rounding the ray may seem to be just outside of the node it has entered.
-      const double place = (from_corner + distance * path.direction[axis]) * (1 / size);
-      const int cell = std::clamp(static_cast<int>(place), 0, (1 << kLog2Dim) - 1);
-      next_[axis] = ((cell + path.ahead[axis]) * size - from_corner) * path.inverse[axis];
-      delta_[axis] = size * std::abs(path.inverse[axis]);
-      place_ += cell << kShift[axis];
-      step_[axis] = path.ahead[axis] > 0 ? 1 << kShift[axis] : -(1 << kShift[axis]);
-    }
-  }
-
-  /// Number of the cell in the node's tables.
-  openvdb::Index offset() const {
-    constexpr int kMask = (1 << kLog2Dim) - 1;
-    return static_cast<openvdb::Index>((place_ & kMask) | ((place_ >> 1) & (kMask << kLog2Dim)) |
-                                       ((place_ >> 2) & (kMask << 2 * kLog2Dim)));
-  }
-
-  /// Goes to the next cell; false where the ray leaves the node or its range.
-  bool advance(Arrival& arrival, double end) {
-    const bool is_x = both(next_[0] <= next_[1], next_[0] <= next_[2]);
-    const bool is_z = both(!is_x, next_[2] < next_[1]);
-    const bool is_y = both(!is_x, !is_z);
-    const double distance = is_x ? next_[0] : is_z ? next_[2] : next_[1];
-    next_[0] += is_x ? delta_[0] : 0.0;
-    next_[1] += is_y ? delta_[1] : 0.0;
-    next_[2] += is_z ? delta_[2] : 0.0;
-    place_ += is_x ? step_[0] : is_z ? step_[2] : step_[1];
-    arrival = {distance, is_x ? 0 : is_z ? 2 : 1};
-    return both(distance < end, (place_ & kOutside) == 0);
-  }
-
- private:
-  // z, y and x lie in one number, each with a bit above it that is set where a step leaves the node on either side.
-  static constexpr std::array<int, 3> kShift = {2 * kLog2Dim + 2, kLog2Dim + 1, 0};
-  static constexpr int kOutside = (1 << kLog2Dim) | (1 << (2 * kLog2Dim + 1)) | (1 << (3 * kLog2Dim + 2));
-
-  std::array<double, 3> next_;   ///< distance at which the ray leaves the cell on each axis
-  std::array<double, 3> delta_;  ///< distance from face to face on each axis
-  std::array<int, 3> step_;
-  int place_ = 0;
-};
 
 /// The voxel where a ray ends.
 struct End {
   const VoxelLeaf* leaf;
   openvdb::Index offset;
-  Arrival arrival;
+  RayArrival arrival;
 };
 
-bool walk(const RayNodes& /*nodes*/, const VoxelLeaf& leaf, const Path& path, Arrival arrival, double end,
+bool walk(const RayNodes& /*nodes*/, const VoxelLeaf& leaf, const RayPath& path, RayArrival arrival, double end,
           End& result) {
   CellWalk<VoxelLeaf::LOG2DIM, 0> cells(path, leaf.origin(), arrival.distance);
   do {
@@ -113,7 +29,7 @@ bool walk(const RayNodes& /*nodes*/, const VoxelLeaf& leaf, const Path& path, Ar
 }
 
 template <typename Node>
-bool walk(const RayNodes& nodes, const Node& node, const Path& path, Arrival arrival, double end, End& result) {
+bool walk(const RayNodes& nodes, const Node& node, const RayPath& path, RayArrival arrival, double end, End& result) {
   CellWalk<Node::kLog2Dim, Node::kLog2Size> cells(path, node.origin, arrival.distance);
   do {
     const openvdb::Index offset = cells.offset();
@@ -124,7 +40,7 @@ bool walk(const RayNodes& nodes, const Node& node, const Path& path, Arrival arr
 }
 
 // The part of the range in which the ray is inside of the box; nothing where it misses.
-std::optional<RayRange> clip(const Path& path, const openvdb::CoordBBox& box, RayRange range) {
+std::optional<RayRange> clip(const RayPath& path, const openvdb::CoordBBox& box, RayRange range) {
   for (std::size_t axis = 0; axis < 3; ++axis) {
     const double low = box.min()[static_cast<int>(axis)];
     const double high = box.max()[static_cast<int>(axis)] + 1.0;
@@ -142,7 +58,7 @@ std::optional<RayRange> clip(const Path& path, const openvdb::CoordBBox& box, Ra
 }
 
 // Through which face of the box the ray came to this distance: the axis whose plane it crosses last before it.
-int axis_of_entry(const Path& path, const openvdb::CoordBBox& box, double distance) {
+int axis_of_entry(const RayPath& path, const openvdb::CoordBBox& box, double distance) {
   int entry = 0;
   double nearest = kInfinity;
   for (std::size_t axis = 0; axis < 3; ++axis) {
@@ -158,7 +74,7 @@ int axis_of_entry(const Path& path, const openvdb::CoordBBox& box, double distan
 }
 
 // There are few regions along any ray through the box.
-bool walk(const RayNodes& nodes, const Path& path, const RayRange& range, End& result) {
+bool walk(const RayNodes& nodes, const RayPath& path, const RayRange& range, End& result) {
   const openvdb::CoordBBox& box = nodes.box();
   if (box.empty()) return false;
   double sum = 0;
@@ -166,7 +82,7 @@ bool walk(const RayNodes& nodes, const Path& path, const RayRange& range, End& r
   if (!std::isfinite(sum)) return false;  // a ray that is no number meets nothing
   const std::optional<RayRange> inside = clip(path, box, range);
   if (!inside) return false;
-  Arrival arrival{inside->begin};
+  RayArrival arrival{inside->begin};
   if (inside->begin > range.begin) arrival.axis = axis_of_entry(path, box, arrival.distance);
 
   constexpr int kSize = 1 << (RayNodes::Region::kLog2Dim + RayNodes::Region::kLog2Size);
@@ -201,7 +117,7 @@ Eigen::Vector3d normal_of_face(VoxelFace face) {
 RayCaster::RayCaster(const VoxelTree& tree, double voxel_size) : nodes_(tree), voxel_size_(voxel_size) {}
 
 std::optional<RayHit> RayCaster::first_hit(const Ray& ray, const RayRange& range) const {
-  const Path path(ray, voxel_size_);
+  const RayPath path(ray, voxel_size_);
   End end;
   if (!walk(nodes_, path, range, end)) return std::nullopt;
   const auto axis = static_cast<std::size_t>(end.arrival.axis);
@@ -215,7 +131,7 @@ std::optional<RayHit> RayCaster::first_hit(const Ray& ray, const RayRange& range
 
 bool RayCaster::is_blocked(const Ray& ray, const RayRange& range) const {
   End end;
-  return walk(nodes_, Path(ray, voxel_size_), range, end);
+  return walk(nodes_, RayPath(ray, voxel_size_), range, end);
 }
 
 }  // namespace vdbmap

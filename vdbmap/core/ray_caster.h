@@ -9,14 +9,10 @@
 #include <Eigen/Core>
 
 #include "vdbmap/core/ray_nodes.h"
+#include "vdbmap/core/ray_walk.h"
 #include "vdbmap/core/voxel_level.h"
 
 namespace vdbmap {
-
-struct Ray {
-  Eigen::Vector3d origin;     ///< [m, local frame]
-  Eigen::Vector3d direction;  ///< distances along the ray are multiples of its length
-};
 
 /// Side of a voxel: 0 to 5 for -x +x -y +y -z +z.
 using VoxelFace = std::uint8_t;

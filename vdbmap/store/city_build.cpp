@@ -26,17 +26,17 @@ namespace {
 // Inputs and what tells them apart, in the order in which they are counted.
 struct NewSources {
   std::vector<MapInput> inputs;
-  std::vector<CitySource> sources;
+  std::vector<MapSource> sources;
   std::vector<std::string> not_counted;
 };
 
-NewSources sort_sources(const std::vector<MapInput>& inputs, const std::vector<CitySource>& sources,
-                        const std::vector<CitySource>& known) {
+NewSources sort_sources(const std::vector<MapInput>& inputs, const std::vector<MapSource>& sources,
+                        const std::vector<MapSource>& known) {
   std::vector<std::size_t> order(inputs.size());
   std::iota(order.begin(), order.end(), std::size_t{0});
   std::ranges::sort(order, {}, [&](std::size_t i) { return std::tie(sources[i].name, sources[i].hash); });
   std::set<std::string> counted;
-  for (const CitySource& source : known) counted.insert(source.hash);
+  for (const MapSource& source : known) counted.insert(source.hash);
   NewSources result;
   for (const std::size_t i : order) {
     if (!counted.insert(sources[i].hash).second) {
@@ -201,7 +201,7 @@ std::vector<CityTile> keep_tiles(const CityWriter& writer, const City& base, con
 
 void sort_manifest(CityManifest& manifest) {
   std::ranges::sort(manifest.tiles, {}, &CityTile::id);
-  std::ranges::sort(manifest.sources, {}, [](const CitySource& s) { return std::tie(s.epoch, s.name, s.hash); });
+  std::ranges::sort(manifest.sources, {}, [](const MapSource& s) { return std::tie(s.epoch, s.name, s.hash); });
 }
 
 // A manifest that is to be published: that of `base`, or an empty one.
@@ -227,7 +227,7 @@ CityBuilt write_city(CityWriter& writer, const std::optional<City>& base, NewSou
     const std::vector<CityTile> kept = keep_tiles(writer, *base, renewed, manifest.layout);
     manifest.tiles.insert(manifest.tiles.end(), kept.begin(), kept.end());
   }
-  for (CitySource& source : counted.sources) source.epoch = manifest.epoch;
+  for (MapSource& source : counted.sources) source.epoch = manifest.epoch;
   manifest.sources.insert(manifest.sources.end(), counted.sources.begin(), counted.sources.end());
   sort_manifest(manifest);
   writer.publish(manifest, options.keep_epochs);
@@ -237,11 +237,11 @@ CityBuilt write_city(CityWriter& writer, const std::optional<City>& base, NewSou
 }
 
 // The same command again may replace what it made.
-void check_replaceable(const CityWriter& writer, const std::vector<CitySource>& sources) {
+void check_replaceable(const CityWriter& writer, const std::vector<MapSource>& sources) {
   if (!writer.current()) return;
-  const std::vector<CitySource>& known = writer.current()->manifest.sources;
-  const auto is_given = [&](const CitySource& source) {
-    return std::ranges::count(sources, source.hash, &CitySource::hash) > 0;
+  const std::vector<MapSource>& known = writer.current()->manifest.sources;
+  const auto is_given = [&](const MapSource& source) {
+    return std::ranges::count(sources, source.hash, &MapSource::hash) > 0;
   };
   if (writer.num_epochs() == 1 && !known.empty() && std::ranges::all_of(known, is_given)) return;
   throw std::invalid_argument(writer.folder().string() +

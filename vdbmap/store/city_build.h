@@ -30,7 +30,7 @@ struct CityBuildOptions {
 struct CityBuilt {
   CityManifest manifest;
   InputNotes notes;                      ///< of the sources that were counted now
-  std::vector<CitySource> added;         ///< these
+  std::vector<MapSource> added;          ///< these
   std::vector<std::string> not_counted;  ///< names of inputs that are in the city already, or twice among the inputs
 };
 

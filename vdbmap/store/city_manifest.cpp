@@ -31,7 +31,7 @@ Json json_of(const CityTile& tile) {
           {"max", json_of(tile.extent.max)}};
 }
 
-Json json_of(const CitySource& source) {
+Json json_of(const MapSource& source) {
   return {{"name", source.name}, {"hash", source.hash}, {"points", source.num_points}, {"epoch", source.epoch}};
 }
 
@@ -181,7 +181,7 @@ CityTile tile_of(const Field& field, std::size_t num_levels) {
   return tile;
 }
 
-CitySource source_of(const Field& field) {
+MapSource source_of(const Field& field) {
   return {field.at("name").text(), field.at("hash").hash(kSourceHashSize), field.at("points").count(),
           field.at("epoch").integer()};
 }

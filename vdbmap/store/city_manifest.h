@@ -8,6 +8,7 @@
 #include <string_view>
 #include <vector>
 
+#include "vdbmap/core/map_history.h"
 #include "vdbmap/core/tile_id.h"
 #include "vdbmap/core/voxel_map.h"
 
@@ -37,22 +38,12 @@ struct CityTile {
   bool operator==(const CityTile& other) const;
 };
 
-/// What was counted: a file of points, or a scan with its pose.
-struct CitySource {
-  std::string name;  ///< of the file, without its folder
-  std::string hash;  ///< of its content, its pose and what else decides about its points: 32 hexadecimal digits
-  std::uint64_t num_points = 0;
-  std::int32_t epoch = 0;  ///< in which it was added
-
-  bool operator==(const CitySource&) const = default;
-};
-
 /// What a city is in one epoch.
 struct CityManifest {
   std::int32_t epoch = 0;  ///< number of the latest survey in it; 0 where none was given
   CityLayout layout;
-  std::vector<CityTile> tiles;      ///< sorted, each with a voxel at least
-  std::vector<CitySource> sources;  ///< sorted by epoch, name and hash
+  std::vector<CityTile> tiles;     ///< sorted, each with a voxel at least
+  std::vector<MapSource> sources;  ///< sorted by epoch, name and hash
 
   bool operator==(const CityManifest&) const = default;
 };

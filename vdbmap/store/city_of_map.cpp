@@ -20,7 +20,7 @@ std::int32_t latest_epoch(const VoxelMap& map) {
 }  // namespace
 
 CityManifest save_city(const std::filesystem::path& folder, const VoxelMap& map, const SaveOptions& options,
-                       const std::vector<CitySource>& sources) {
+                       const std::vector<MapSource>& sources) {
   CityWriter writer(folder);
   if (writer.current()) throw IoError::malformed(folder, "holds a city already");
   CityManifest manifest{latest_epoch(map), layout_of(map, options.density), {}, sources};

@@ -13,6 +13,6 @@ namespace vdbmap {
 /// whole, the city is that map again, bit for bit. Its epoch is the latest that a voxel was seen in. Throws IoError,
 /// also where the folder holds a city already.
 CityManifest save_city(const std::filesystem::path& folder, const VoxelMap& map, const SaveOptions& options = {},
-                       const std::vector<CitySource>& sources = {});
+                       const std::vector<MapSource>& sources = {});
 
 }  // namespace vdbmap

@@ -74,8 +74,8 @@ std::string name_of(const ScanPlace& scan) { return ScanPlace{scan.file.filename
 
 }  // namespace
 
-std::vector<CitySource> identify_sources(const std::vector<MapInput>& inputs,
-                                         const std::function<void()>& on_file_done) {
+std::vector<MapSource> identify_sources(const std::vector<MapInput>& inputs,
+                                        const std::function<void()>& on_file_done) {
   std::set<std::filesystem::path> distinct;
   for (const MapInput& input : inputs) distinct.insert(input.scan.file);
   const std::vector<std::filesystem::path> files(distinct.begin(), distinct.end());
@@ -84,7 +84,7 @@ std::vector<CitySource> identify_sources(const std::vector<MapInput>& inputs,
     hashes[i] = hash_of_file(files[i]);
     on_file_done();
   });
-  std::vector<CitySource> sources;
+  std::vector<MapSource> sources;
   for (const MapInput& input : inputs) {
     const auto file = std::ranges::lower_bound(files, input.scan.file);
     sources.push_back(

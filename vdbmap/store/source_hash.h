@@ -13,7 +13,7 @@ namespace vdbmap {
 /// What tells the inputs of a city apart, in their order: the names of their files without folders, and hashes of
 /// content, turn and pose. The same scan at another pose is another source. Files are read once, in parallel;
 /// on_file_done() is called after each, by any thread. Throws IoError for files that cannot be read.
-std::vector<CitySource> identify_sources(
+std::vector<MapSource> identify_sources(
     const std::vector<MapInput>& inputs, const std::function<void()>& on_file_done = [] {});
 
 }  // namespace vdbmap

@@ -2,22 +2,26 @@
 #include "vdbmap/io/vdb/map_file.h"
 
 #include <algorithm>
+#include <iterator>
 #include <stdexcept>
 #include <string>
 #include <utility>
 #include <vector>
 
 #include "vdbmap/core/error.h"
+#include "vdbmap/io/history_text.h"
 #include "vdbmap/io/vdb/map_grids.h"
 #include "vdbmap/io/vdb/map_metadata.h"
 #include "vdbmap/io/vdb/vdb_file.h"
 #include "vdbmap/io/vdb/vdb_outline.h"
+#include "vdbmap/io/vdb/visibility_file.h"
 #include "vdbmap/io/vdb/voxel_grid.h"
 
 namespace vdbmap {
 namespace {
 
 constexpr const char* kVoxelGridName = "voxels";
+constexpr const char* kHistoryName = "history";
 
 bool is_voxel_grid(const std::string& name) { return name.starts_with(kVoxelGridName); }
 
@@ -45,10 +49,18 @@ void check_levels(const VoxelMap& map, const std::filesystem::path& path) {
 }  // namespace
 
 void save_map(const std::filesystem::path& path, const VoxelMap& map, const SaveOptions& options) {
+  save_map(path, map, MapExtras(), options);
+}
+
+void save_map(const std::filesystem::path& path, const VoxelMap& map, const MapExtras& extras,
+              const SaveOptions& options) {
   openvdb::initialize();
   std::vector<GridMaker> grids;
   for (const VoxelLevel& level : map.levels) add_level(grids, map, level, options);
-  write_vdb_grid_by_grid(path, grids, metadata_of_map(map));
+  if (extras.visibility) std::ranges::move(visibility_grids(map, *extras.visibility), std::back_inserter(grids));
+  openvdb::MetaMap metadata = metadata_of_map(map);
+  if (!extras.history.empty()) metadata.insertMeta(kHistoryName, openvdb::StringMetadata(text_of(extras.history)));
+  write_vdb_grid_by_grid(path, grids, metadata);
 }
 
 bool is_map_file(const std::filesystem::path& path) {
@@ -76,6 +88,12 @@ VoxelMap load_map(const std::filesystem::path& path) {
             [](const VoxelLevel& a, const VoxelLevel& b) { return a.voxel_size() < b.voxel_size(); });
   check_levels(map, path);
   return map;
+}
+
+MapHistory load_history(const std::filesystem::path& path) {
+  const VdbContent content = read_vdb(path, [](const std::string&) { return false; });
+  const auto history = content.metadata->getMetadata<openvdb::StringMetadata>(kHistoryName);
+  return history ? parse_map_history(history->value(), path) : MapHistory();
 }
 
 }  // namespace vdbmap

@@ -2,7 +2,10 @@
 #pragma once
 
 #include <filesystem>
+#include <optional>
 
+#include "vdbmap/core/map_history.h"
+#include "vdbmap/core/visibility.h"
 #include "vdbmap/core/voxel_map.h"
 
 namespace vdbmap {
@@ -17,11 +20,24 @@ struct SaveOptions {
 /// the voxel size in the name. Atomic; equal maps give equal bytes. Throws IoError.
 void save_map(const std::filesystem::path& path, const VoxelMap& map, const SaveOptions& options = {});
 
+/// What a map file may keep beside the voxels; load_map() does not read it.
+struct MapExtras {
+  std::optional<Visibility> visibility;  ///< what rays said (visibility_file.h)
+  MapHistory history;                    ///< from what the map was made
+};
+
+/// The same with what is known beside the voxels.
+void save_map(const std::filesystem::path& path, const VoxelMap& map, const MapExtras& extras,
+              const SaveOptions& options = {});
+
 /// Whether a .vdb file holds a map, which may still be damaged inside; reads no voxel of it. Throws IoError as
 /// load_map() does, but not for files of other programs.
 bool is_map_file(const std::filesystem::path& path);
 
 /// Reads what save_map() wrote. Throws IoError naming the file and the reason, also for .vdb files of other programs.
 VoxelMap load_map(const std::filesystem::path& path);
+
+/// Reads from what a map file was made; empty where it does not say. Throws IoError.
+MapHistory load_history(const std::filesystem::path& path);
 
 }  // namespace vdbmap

@@ -29,9 +29,9 @@ bool is_level_suffix(std::string_view text) {
 }  // namespace
 
 GridRole role_of_grid(const openvdb::GridBase& grid) {
-  constexpr std::array kChannels = {"voxels",    "density",     "color",     "count",     "mean",
-                                    "cov_diag",  "cov_offdiag", "normal",    "planarity", "label",
-                                    "intensity", "first_epoch", "last_epoch"};
+  constexpr std::array kChannels = {"voxels",    "density",     "color",      "count",     "mean",
+                                    "cov_diag",  "cov_offdiag", "normal",     "planarity", "label",
+                                    "intensity", "first_epoch", "last_epoch", "hits",      "passes"};
   const std::string name = grid.getName();
   for (const std::string channel : kChannels) {
     if (!name.starts_with(channel) || !is_level_suffix(std::string_view(name).substr(channel.size()))) continue;

@@ -32,7 +32,8 @@ Finding check_each(const CheckedFile& file, const Check& check) {
 }
 
 bool is_whole_number_channel(const std::string& channel) {
-  return channel == "count" || channel == "label" || channel == "first_epoch" || channel == "last_epoch";
+  return channel == "count" || channel == "label" || channel == "first_epoch" || channel == "last_epoch" ||
+         channel == "hits" || channel == "passes";
 }
 
 bool is_vector_channel(const std::string& channel) {
