@@ -3,7 +3,9 @@
 
 build_packages=(
   cmake g++ ninja-build pkg-config
-  libceres-dev libcgal-dev libcli11-dev libeigen3-dev libembree-dev libjemalloc-dev libopenvdb-dev libpcap-dev libspdlog-dev libtbb-dev libxxhash-dev nlohmann-json3-dev
+  libceres-dev libcgal-dev libcli11-dev libeigen3-dev libembree-dev libjemalloc-dev libopenvdb-dev libpcap-dev libproj-dev libspdlog-dev libtbb-dev libxxhash-dev nlohmann-json3-dev
+  # The coordinate systems that PROJ knows.
+  proj-data
   # OpenVDB's find module wants these; libopenvdb-dev does not depend on them.
   libblosc-dev libboost-iostreams-dev zlib1g-dev
   # Pictures and their letters; the CMake config of OpenImageIO wants its tools too.
