@@ -18,13 +18,14 @@ Command evaluate_command();
 Command render_command();
 Command segment_command();
 Command update_command();
+Command diff_command();
 Command simulate_command();
 
 std::vector<Command> all_commands() {
   return {
-      build_command(),    info_command(),   query_command(),   check_command(),    export_command(),
-      import_command(),   merge_command(),  log_command(),     odometry_command(), localize_command(),
-      evaluate_command(), render_command(), segment_command(), update_command(),   simulate_command(),
+      build_command(),   info_command(),   query_command(),    check_command(),    export_command(),   import_command(),
+      merge_command(),   log_command(),    odometry_command(), localize_command(), evaluate_command(), render_command(),
+      segment_command(), update_command(), diff_command(),     simulate_command(),
   };
 }
 
