@@ -1,7 +1,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // How well the diff of two surveys of a simulated street tells what came and went:
 //
-//     change_accuracy STREET [--voxel S=0.2] [--later mapper|vlp16] [--poses FILE] [--regions]
+//     change_accuracy STREET [--voxel S=0.2] [--later mapper|vlp16] [--poses FILE] [--align] [--pose-sigma S]
+//     [--regions]
 //
 // STREET is a folder of `vdbmap simulate`, surveyed by its mapper in epoch 0 and by the mapper or the VLP-16 in epoch
 // 1; scans lie at the poses of FILE (KITTI), without it at the true ones in the frame of the survey. Every voxel
@@ -18,9 +19,11 @@
 #include <sstream>
 #include <stdexcept>
 #include <string>
+#include <unordered_set>
 #include <utility>
 #include <vector>
 
+#include "registration/fine/map_alignment.h"
 #include "registration/posed_scans.h"
 #include "vdbmap/change/change_regions.h"
 #include "vdbmap/change/map_diff.h"
@@ -38,6 +41,7 @@ const Eigen::Vector3d kMapperScanner(-1.95, 0, 2.35);  // [m] in its vehicle
 constexpr std::uint16_t kFirstMoving = 252;            // SemanticKITTI's moving classes from here on
 constexpr std::size_t kFewestVoxels = 20;              // of a vehicle that was seen
 constexpr double kLargeRegion = 0.2;                   // [m^3]
+constexpr auto kNoRecord = static_cast<std::size_t>(-1);
 
 struct Options {
   std::filesystem::path street;
@@ -45,6 +49,8 @@ struct Options {
   std::string later = "mapper";
   std::filesystem::path poses;
   bool lists_regions = false;
+  bool aligns = false;
+  DiffOptions diff;
 };
 
 bool is_vehicle(int label) { return label == 10 || label == 13 || label == 18 || label == 20; }
@@ -106,18 +112,86 @@ Epoch scanner_epoch(const Options& options, int number) {
   return epoch;
 }
 
+// The objects that changes.csv lists, by what became of them.
+constexpr double kCell = 0.1;  // [m]
+
+std::uint64_t cell_key(int object, const VoxelIndex& cell) {
+  const auto part = [](std::int32_t i) { return static_cast<std::uint64_t>(i) & 0xfffff; };
+  return (static_cast<std::uint64_t>(object) << 60 ^ static_cast<std::uint64_t>(object) * 0x9e3779b97f4a7c15) ^
+         (part(cell.x()) << 40 | part(cell.y()) << 20 | part(cell.z()));
+}
+
+VoxelIndex cell_of(const Eigen::Vector3d& point) { return voxel_of_point(point, 1 / kCell); }
+
+struct Truth {
+  std::set<int> gone, came, grown;
+  std::unordered_set<std::uint64_t> cells;  // of 10 cm, that the surface of an object passes in one epoch only
+
+  // Whether a point of an object lies in a cell that changed, or beside one: surveys are some centimetres off.
+  bool has_changed(int object, const Eigen::Vector3d& point) const {
+    const VoxelIndex cell = cell_of(point);
+    if (cells.contains(cell_key(object, cell))) return true;
+    for (int axis = 0; axis < 3; ++axis) {
+      for (const int step : {-1, 1}) {
+        VoxelIndex beside = cell;
+        beside[axis] += step;
+        if (cells.contains(cell_key(object, beside))) return true;
+      }
+    }
+    return false;
+  }
+
+  bool is_listed(int object) const { return gone.contains(object) || came.contains(object) || grown.contains(object); }
+};
+
+Truth read_truth(const std::filesystem::path& path) {
+  Truth truth;
+  std::set<int> vanished, appeared;
+  std::ifstream file(path);
+  if (!file) throw std::runtime_error(path.string() + ": cannot open");
+  std::string line;
+  std::getline(file, line);
+  while (std::getline(file, line)) {
+    std::vector<std::string> fields;
+    std::stringstream stream(line);
+    for (std::string field; std::getline(stream, field, ',');) fields.push_back(field);
+    const int object = std::stoi(fields.at(7)), label = std::stoi(fields[6]);
+    truth.cells.insert(cell_key(object, cell_of({std::stod(fields[2]), std::stod(fields[3]), std::stod(fields[4])})));
+    if (is_plant(label)) {
+      truth.grown.insert(object);
+    } else {
+      (fields[5] == "vanished" ? vanished : appeared).insert(object);
+    }
+  }
+  for (const int object : vanished) (appeared.contains(object) ? truth.grown : truth.gone).insert(object);
+  for (const int object : appeared) {
+    if (!vanished.contains(object)) truth.came.insert(object);
+  }
+  return truth;
+}
+
 // A map, what its rays saw, and the thing in each of its voxels.
 struct Survey {
   VoxelMap map;
   Visibility visibility;
   std::vector<Thing> things;
-  std::vector<std::size_t> records;  // of each point
+  std::vector<std::size_t> records;        // of each point
+  std::vector<std::uint32_t> num_changed;  // a record: points in cells of their objects that changed
+
+  Thing thing_of(const VoxelRecord& record) const {
+    return things[static_cast<std::size_t>(&record - map.finest().records().data())];
+  }
+
+  // Whether the other epoch has another surface, or none, where this voxel's is.
+  bool has_changed(std::size_t record) const { return 2 * num_changed[record] > map.finest().records()[record].count; }
 };
 
 std::vector<Thing> most_of(const std::vector<std::size_t>& records, const std::vector<PointLabel>& labels,
                            std::size_t num_records) {
   std::vector<std::pair<std::size_t, Thing>> votes;
-  for (std::size_t i = 0; i < records.size(); ++i) votes.push_back({records[i], {labels[i].label, labels[i].object}});
+  for (std::size_t i = 0; i < records.size(); ++i) {
+    if (records[i] != kNoRecord) votes.push_back({records[i], {labels[i].label, labels[i].object}});
+  }
   std::ranges::sort(votes);
   std::vector<Thing> things(num_records);
   for (std::size_t begin = 0; begin < votes.size();) {
@@ -136,58 +210,34 @@ std::vector<Thing> most_of(const std::vector<std::size_t>& records, const std::v
   return things;
 }
 
-Survey survey_of(const Epoch& epoch, double voxel_size) {
+Survey survey_of(const Epoch& epoch, const Truth& truth, double voxel_size) {
   BuildOptions build;
   build.voxel_sizes = {voxel_size};
   MapBuilder builder(build);
   epoch.clouds([&](const PosedCloud& posed) { builder.add(posed.cloud, posed.map_from_cloud); });
-  Survey survey{builder.finish(), {}, {}, {}};
+  Survey survey{builder.finish(), {}, {}, {}, {}};
   survey.visibility = find_visibility(survey.map, epoch.clouds);
   const VoxelLevel& level = survey.map.finest();
   const VoxelFinder finder(level);
+  survey.num_changed.resize(level.size());
   epoch.clouds([&](const PosedCloud& posed) {
     for (const Eigen::Vector3d& point : posed.cloud.positions) {
       const Eigen::Vector3d local = posed.map_from_cloud * point - survey.map.frame.anchor;
       const VoxelRecord* record = finder.find(voxel_of_point(local, voxels_per_metre(voxel_size)));
-      if (!record) throw std::runtime_error("a point lies in no voxel");
-      survey.records.push_back(static_cast<std::size_t>(record - level.records().data()));
+      // Rounding puts a point on a border on either side of it.
+      survey.records.push_back(record ? static_cast<std::size_t>(record - level.records().data()) : kNoRecord);
+      const int object = epoch.labels.at(survey.records.size() - 1).object;
+      if (record && truth.is_listed(object) && truth.has_changed(object, posed.map_from_cloud * point)) {
+        ++survey.num_changed[survey.records.back()];
+      }
     }
   });
+  const auto num_lost = std::ranges::count(survey.records, kNoRecord);
+  if (static_cast<std::size_t>(num_lost) > survey.records.size() / 1000)
+    throw std::runtime_error("points lie in no voxel");
   if (survey.records.size() != epoch.labels.size()) throw std::runtime_error("labels are not those of the points");
   survey.things = most_of(survey.records, epoch.labels, level.size());
   return survey;
-}
-
-// The objects that changes.csv lists, by what became of them.
-struct Truth {
-  std::set<int> gone, came, grown;
-
-  bool is_listed(int object) const { return gone.contains(object) || came.contains(object) || grown.contains(object); }
-};
-
-Truth read_truth(const std::filesystem::path& path) {
-  Truth truth;
-  std::set<int> vanished, appeared;
-  std::ifstream file(path);
-  if (!file) throw std::runtime_error(path.string() + ": cannot open");
-  std::string line;
-  std::getline(file, line);
-  while (std::getline(file, line)) {
-    std::vector<std::string> fields;
-    std::stringstream stream(line);
-    for (std::string field; std::getline(stream, field, ',');) fields.push_back(field);
-    const int object = std::stoi(fields.at(7)), label = std::stoi(fields[6]);
-    if (is_plant(label)) {
-      truth.grown.insert(object);
-    } else {
-      (fields[5] == "vanished" ? vanished : appeared).insert(object);
-    }
-  }
-  for (const int object : vanished) (appeared.contains(object) ? truth.grown : truth.gone).insert(object);
-  for (const int object : appeared) {
-    if (!vanished.contains(object)) truth.came.insert(object);
-  }
-  return truth;
 }
 
 struct Rate {
@@ -205,6 +255,7 @@ struct Rates {
   Rate false_solid;                                                    // ground and walls called anything
   Rate false_unseen;                                                   // of what the other survey never saw
   std::map<int, Rate> kept_by_label;
+  std::map<int, std::array<std::uint64_t, 5>> missed_by_label;  // dynamic and seen: by what the diff says of them
 };
 
 // What the diff says of each voxel of a survey.
@@ -232,6 +283,7 @@ bool is_change(Change change) {
 void judge(const Survey& survey, const Survey& other, const std::vector<Change>& changes, const Truth& truth,
            const std::set<int>& dynamic, const VoxelIndex& other_from_this, Rates& rates) {
   const SightFinder sight(other.map.finest(), other.visibility);
+  const VoxelFinder finder(other.map.finest());
   for_each_voxel(survey.map.finest(), [&](const VoxelIndex& voxel, std::size_t record) {
     const auto [label, object] = survey.things[record];
     const bool is_called = is_change(changes[record]);
@@ -240,8 +292,12 @@ void judge(const Survey& survey, const Survey& other, const std::vector<Change>&
     if (label >= kFirstMoving || label == 1) return;
     const std::uint64_t points = survey.map.finest().records()[record].count;
     if (dynamic.contains(object)) {
+      const VoxelRecord* counterpart = finder.find(voxel + other_from_this);
+      const bool is_replaced = counterpart && truth.is_listed(other.thing_of(*counterpart).second);
+      if (is_replaced || !survey.has_changed(record)) return;
       rates.rejected_of_all.add(is_called);
       if (!is_seen) return;
+      ++rates.missed_by_label[label][static_cast<std::size_t>(changes[record])];
       rates.rejected.add(is_called);
       rates.rejected_points.add(is_called, points);
     } else if (!truth.is_listed(object)) {
@@ -274,7 +330,7 @@ void judge_regions(const Survey& survey, const Survey& other, const MapDiff& dif
   std::map<int, std::size_t> seen_of;  // voxels of each vehicle that the other survey saw
   for_each_voxel(survey.map.finest(), [&](const VoxelIndex& voxel, std::size_t record) {
     const auto [label, object] = survey.things[record];
-    if (!is_vehicle(label) || !dynamic.contains(object)) return;
+    if (!is_vehicle(label) || !dynamic.contains(object) || !survey.has_changed(record)) return;
     if (sight.find(voxel + other_from_this) != Sight::kNeverSeen) ++seen_of[object];
   });
   std::map<int, std::set<std::size_t>> regions_of;
@@ -340,6 +396,10 @@ Options parse(int argc, char** argv) {
       options.later = value();
     else if (argument == "--poses")
       options.poses = value();
+    else if (argument == "--pose-sigma")
+      options.diff.pose_sigma = std::stod(value());
+    else if (argument == "--align")
+      options.aligns = true;
     else if (argument == "--regions")
       options.lists_regions = true;
     else
@@ -358,10 +418,17 @@ VoxelIndex shift_between(const VoxelMap& from, const VoxelMap& to) {
 
 int run(const Options& options) {
   const Truth truth = read_truth(options.street / "changes.csv");
-  const Survey earlier = survey_of(mapper_epoch(options, 0), options.voxel_size);
-  const Survey later =
-      survey_of(options.later == "mapper" ? mapper_epoch(options, 1) : scanner_epoch(options, 1), options.voxel_size);
-  const MapDiff diff = map_diff({earlier.map, &earlier.visibility}, {later.map, &later.visibility});
+  const Survey earlier = survey_of(mapper_epoch(options, 0), truth, options.voxel_size);
+  const Survey later = survey_of(options.later == "mapper" ? mapper_epoch(options, 1) : scanner_epoch(options, 1),
+                                 truth, options.voxel_size);
+  DiffOptions diff_options = options.diff;
+  if (options.aligns) {
+    const registration::MapAlignment alignment = registration::align_maps(earlier.map, later.map);
+    diff_options.earlier_from_later = alignment.earlier_from_later;
+    std::printf("aligned by %.1f %.1f %.1f mm, %.4f degrees\n", 1e3 * alignment.shift.x(), 1e3 * alignment.shift.y(),
+                1e3 * alignment.shift.z(), alignment.turn_deg);
+  }
+  const MapDiff diff = map_diff({earlier.map, &earlier.visibility}, {later.map, &later.visibility}, diff_options);
   const VoxelIndex later_from_earlier = shift_between(earlier.map, later.map);
 
   Rates rates;
@@ -391,6 +458,12 @@ int run(const Options& options) {
   std::printf("  called of static, by class:");
   for (const auto& [label, rate] : rates.kept_by_label) {
     std::printf(" %d: %zu of %zu;", label, rate.all - rate.count, rate.all);
+  }
+  std::printf("\n  dynamic, by class (unchanged, appeared, vanished, changed, unobserved):");
+  for (const auto& [label, counts_of] : rates.missed_by_label) {
+    std::printf(" %d:", label);
+    for (const std::uint64_t count : counts_of) std::printf(" %zu", count);
+    std::printf(";");
   }
   std::printf("\n");
   return 0;

@@ -25,6 +25,9 @@ from mathutils import Vector
 
 PALE = (0.62, 0.62, 0.6, 1.0)
 MARGIN = 1.05  # of the picture around the map
+COLORS = "voxel_color"  # of meshes
+STRAY = 0.005  # of the voxels on each side of the map, which may lie outside of the picture
+MOST_PLACES = 100_000  # looked at
 BLOCK = 128  # voxels along the edge of what is read at once
 # Of each side of a voxel the way out, and its corners, against the clock seen from outside.
 SIDES = (
@@ -58,7 +61,7 @@ def parse_arguments():
     parser.add_argument("--samples", type=int, default=48, help="light paths a pixel [48]")
     parser.add_argument("--turn", type=int, default=0, metavar="FRAMES", help="the camera goes once around in so many frames")
     parser.add_argument("--seconds", type=float, default=2.0, help="that each epoch is shown [2]")
-    parser.add_argument("--heading", type=float, default=65.0, help="of the view, degrees to the left of +x [65]")
+    parser.add_argument("--heading", type=float, help="of the view, degrees to the left of +x; by default across the map")
     parser.add_argument("--elevation", type=float, default=-35.0, help="of the view, degrees; below the horizon negative [-35]")
     parser.add_argument("--fog", action="store_true", help="volumes instead of cubes")
     parser.add_argument("--most", type=float, default=1.5e6, help="voxels of a map that become cubes [1500000]")
@@ -168,7 +171,7 @@ def mesh_of(name, voxels, without=None):
     if blocks[0][1] is not None:
         colors = numpy.ones((count, 4), dtype=numpy.float32)
         colors[:, :3] = numpy.concatenate([block[1] for block in blocks])
-        mesh.color_attributes.new("color", "FLOAT_COLOR", "CORNER").data.foreach_set("color", colors.ravel())
+        mesh.color_attributes.new(COLORS, "FLOAT_COLOR", "CORNER").data.foreach_set("color", colors.ravel())
     mesh.update(calc_edges=True)
     return mesh
 
@@ -182,8 +185,8 @@ def make_surface(name, has_color, pale=False, glow=0.0):
     surface.inputs["Roughness"].default_value = 0.9
     surface.inputs["Base Color"].default_value = PALE
     if has_color and not pale:
-        color = nodes.new("ShaderNodeAttribute")
-        color.attribute_name = "color"
+        color = nodes.new("ShaderNodeVertexColor")
+        color.layer_name = COLORS
         links.new(color.outputs["Color"], surface.inputs["Base Color"])
         if glow > 0:
             emission = "Emission" if "Emission" in surface.inputs else "Emission Color"
@@ -253,16 +256,23 @@ def show_in_frames(thing, first, last, end):
         key(last + 1, True)
 
 
-def box_of(things):
-    corners = [thing.matrix_world @ Vector(corner) for thing in things for corner in thing.bound_box]
-    low = Vector([min(corner[axis] for corner in corners) for axis in range(3)])
-    high = Vector([max(corner[axis] for corner in corners) for axis in range(3)])
-    return low, high
+def places_of(things):
+    """Corners of voxels, or of the boxes around volumes."""
+    places = [numpy.zeros((0, 3), dtype=numpy.float32)]
+    for thing in things:
+        if thing.type == "MESH":
+            corners = numpy.empty(3 * len(thing.data.vertices), dtype=numpy.float32)
+            thing.data.vertices.foreach_get("co", corners)
+            corners = corners.reshape(-1, 3)
+            places.append(corners[::max(1, len(corners) // MOST_PLACES)])
+        else:
+            places.append(numpy.array([thing.matrix_world @ Vector(corner) for corner in thing.bound_box]))
+    return numpy.concatenate(places)
 
 
 def add_light(scene):
     sun = bpy.data.objects.new("sun", bpy.data.lights.new("sun", "SUN"))
-    sun.data.energy = 4.0
+    sun.data.energy = 2.6
     sun.data.angle = math.radians(2)
     sun.rotation_euler = (math.radians(48), 0, math.radians(25))
     scene.collection.objects.link(sun)
@@ -270,33 +280,31 @@ def add_light(scene):
     world.use_nodes = True
     background = world.node_tree.nodes["Background"]
     background.inputs["Color"].default_value = (0.78, 0.86, 1.0, 1.0)
-    background.inputs["Strength"].default_value = 0.9
+    background.inputs["Strength"].default_value = 0.7
     scene.world = world
 
 
-def corners_of(low, high):
-    return [Vector((x, y, z)) for x in (low.x, high.x) for y in (low.y, high.y) for z in (low.z, high.z)]
-
-
-def add_camera(scene, low, high, options):
-    """A camera on an arm around the middle, so far that the box fills the picture."""
+def add_camera(scene, places, options):
+    """A camera on an arm around the middle, so far that nearly all places are in the picture."""
     camera = bpy.data.objects.new("camera", bpy.data.cameras.new("camera"))
     scene.collection.objects.link(camera)
     scene.camera = camera
     arm = bpy.data.objects.new("middle", None)
     scene.collection.objects.link(arm)
+    low, high = numpy.quantile(places, (STRAY, 1 - STRAY), axis=0)
     middle = (low + high) / 2
     arm.location = middle
     camera.parent = arm
-    heading, elevation = math.radians(options.heading), math.radians(options.elevation)
+    across = 65.0 if high[0] - low[0] > high[1] - low[1] else 155.0
+    heading = math.radians(across if options.heading is None else options.heading)
+    elevation = math.radians(options.elevation)
     view = Vector((math.cos(heading) * math.cos(elevation), math.sin(heading) * math.cos(elevation), math.sin(elevation)))
     rotation = view.to_track_quat("-Z", "Y")
     tangent = math.tan(camera.data.angle / 2) / MARGIN
     tangents = (tangent, tangent * scene.render.resolution_y / scene.render.resolution_x)
-    distance = 0.0
-    for corner in corners_of(low, high):
-        seen = rotation.inverted() @ (corner - middle)
-        distance = max(distance, *(seen.z + abs(seen[axis]) / tangents[axis] for axis in (0, 1)))
+    seen = (places - middle) @ numpy.array(rotation.to_matrix())  # x to the right, y up, z to the camera
+    reach = numpy.max([seen[:, 2] + numpy.abs(seen[:, axis]) / tangents[axis] for axis in (0, 1)], axis=0)
+    distance = float(numpy.quantile(reach, 1 - STRAY))
     camera.location = -distance * view
     camera.rotation_euler = rotation.to_euler()
     camera.data.clip_end = 10 * distance
@@ -346,12 +354,13 @@ def open_maps(options):
     return things, end
 
 
-def look_box(options, things):
-    if not options.look_at:
-        return box_of(things)
-    x, y, z, radius = (float(number) for number in options.look_at.split(","))
-    middle, reach = Vector((x, y, z)), Vector((radius, radius, radius))
-    return middle - reach, middle + reach
+def places_to_see(options, things):
+    if options.look_at:
+        x, y, z, radius = (float(number) for number in options.look_at.split(","))
+        sides = numpy.concatenate([numpy.eye(3), -numpy.eye(3)])
+        return numpy.array([x, y, z]) + radius * sides
+    places = places_of(things)
+    return places if len(places) > 0 else numpy.array([[-1.0, -1.0, -1.0], [1.0, 1.0, 1.0]])
 
 
 def render(scene, options):
@@ -371,7 +380,7 @@ def main():
     things, num_frames = open_maps(options)
     bpy.context.view_layer.update()
     add_light(scene)
-    add_camera(scene, *look_box(options, things), options)
+    add_camera(scene, places_to_see(options, things), options)
     scene.frame_start, scene.frame_end = 1, max(num_frames, options.turn, 1)
     scene.frame_set(1)
     if options.save:

@@ -23,7 +23,7 @@ constexpr std::uint32_t color_code_of(Change change) {
     case Change::kUnchanged:
       break;
   }
-  return 0xd9d9d6;
+  return 0xbcbcb8;
 }
 
 }  // namespace vdbmap

@@ -90,7 +90,7 @@ struct MapDiff {
 /// What is not explained has changed where the other map has a voxel there too, or a parallel plane. Where the other
 /// map saw the place empty it appeared or vanished, if that map saw something of both sides of it: rays may graze a
 /// surface without one of them ending near by. Porous things (leaves, fences), through which rays may pass, explain
-/// what is up to two voxels beside them; voxels that their own map's rays passed nine times of ten, and voxels with
+/// what is beside them; voxels that their own map's rays passed nine times of ten, and voxels with
 /// less than two others of any change around them, are no change.
 ///
 /// Confidence: of a changed voxel the probability that such surveys of the same two days again differ significantly; of

@@ -106,7 +106,7 @@ Distance distance_of_edges(const VoxelPoints& voxel, const VoxelPoints& beside, 
                            const SignificanceLimits& limits) {
   const double moved = std::max(0.0, 2 * (voxel.mean - beside.mean).norm() - voxel_size);
   const double uniform = kUniformVariance * voxel_size * voxel_size;
-  const double variance = 4 * uniform * (1 / voxel.count + 1 / beside.count) + limits.common_variance;
+  const double variance = uniform * (1 / voxel.count + 1 / beside.count) + limits.common_variance;
   return {moved / std::sqrt(variance), limits.sigmas, false};
 }
 

@@ -7,7 +7,7 @@
 namespace vdbmap {
 namespace {
 
-constexpr std::int32_t kPorousReach = 2;  // [voxels] around a porous thing, in which rays may or may not meet it
+constexpr std::int32_t kPorousReach = 1;  // [voxels] around a porous thing, in which rays may or may not meet it
 constexpr int kFewestPorous = 2;          // voxels that make one
 constexpr double kSurface = 0.35;         // planarity from which a stored normal is one of a surface
 constexpr double kPorousPlanarity = 0.2;  // of the 3 x 3 x 3 voxels around a voxel of a porous thing, at most

@@ -117,8 +117,8 @@ struct Column {
   TextAlign align;
 };
 constexpr std::array kColumns = {Column{"no.", 50, TextAlign::kRight}, Column{"what", 76, TextAlign::kLeft},
-                                 Column{"class", 210, TextAlign::kLeft}, Column{"size [m]", 545, TextAlign::kRight},
-                                 Column{"sure", 660, TextAlign::kRight}};
+                                 Column{"class", 200, TextAlign::kLeft}, Column{"size [m]", 630, TextAlign::kRight},
+                                 Column{"sure", 745, TextAlign::kRight}};
 
 void draw_row(Image& page, int y, const std::array<std::string, kColumns.size()>& cells, int size, Rgb8 color,
               bool is_bold) {

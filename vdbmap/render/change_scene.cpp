@@ -87,7 +87,8 @@ ChangeScene scene_of_changes(const VoxelMap& later, const MapDiff& diff) {
   return scene;
 }
 
-ChangeScene scene_around(const VoxelMap& map, const MapDiff& diff, const Eigen::Vector3d& place, double reach) {
+ChangeScene scene_around(const VoxelMap& map, MapSide side, const MapDiff& diff, const Eigen::Vector3d& place,
+                         double reach) {
   const double size = map.finest().voxel_size();
   const auto to_voxel = [&](const Eigen::Vector3d& point) {
     return voxel_of_point(point - map.frame.anchor, voxels_per_metre(size));
@@ -102,8 +103,10 @@ ChangeScene scene_around(const VoxelMap& map, const MapDiff& diff, const Eigen::
   scene.map.levels.push_back(cut_leaves(map.finest(), box));
   const Placement in_diff(map.frame, diff.frame, Eigen::Isometry3d::Identity(), size);
   const KindFinder kinds(diff);
+  const Change of_the_other = side == MapSide::kEarlier ? Change::kAppeared : Change::kVanished;
   for_each_voxel(scene.map.finest(), [&](const VoxelIndex& voxel, std::size_t) {
-    scene.changes.push_back(kinds.find(voxel + in_diff.shift()));
+    const Change change = kinds.find(voxel + in_diff.shift());
+    scene.changes.push_back(change == of_the_other ? Change::kUnchanged : change);
   });
   return scene;
 }

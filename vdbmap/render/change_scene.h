@@ -18,8 +18,12 @@ struct ChangeScene {
 /// std::invalid_argument where the diff is of maps with another anchor or voxel size.
 ChangeScene scene_of_changes(const VoxelMap& later, const MapDiff& diff);
 
-/// The voxels of a map whose leaves lie within `reach` [m] of a place [m, original system] in plan, with the kinds that
-/// the diff gives to those places: of the earlier map as of the later one.
-ChangeScene scene_around(const VoxelMap& map, const MapDiff& diff, const Eigen::Vector3d& place, double reach);
+/// Of two maps the earlier or the later one.
+enum class MapSide { kEarlier, kLater };
+
+/// The voxels of one of the two maps whose leaves lie within `reach` [m] of a place [m, original system] in plan, with
+/// the kinds that the diff gives to those places; what is of the other map alone is not seen.
+ChangeScene scene_around(const VoxelMap& map, MapSide side, const MapDiff& diff, const Eigen::Vector3d& place,
+                         double reach);
 
 }  // namespace vdbmap

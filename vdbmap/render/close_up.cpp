@@ -88,8 +88,8 @@ Image draw(ChangeScene scene, const ChangeRegion& region, const Eigen::Isometry3
 CloseUps draw_close_ups(const VoxelMap& earlier, const VoxelMap& later, const MapDiff& diff, const ChangeRegion& region,
                         const ImageSize& size) {
   const double reach = kReach + radius_of(region);
-  ChangeScene before = scene_around(earlier, diff, region.center(), reach);
-  ChangeScene after = scene_around(later, diff, region.center(), reach);
+  ChangeScene before = scene_around(earlier, MapSide::kEarlier, diff, region.center(), reach);
+  ChangeScene after = scene_around(later, MapSide::kLater, diff, region.center(), reach);
   const Eigen::Isometry3d pose = best_eye(before, after, region);
   return {draw(std::move(before), region, pose, size), draw(std::move(after), region, pose, size)};
 }
