@@ -51,6 +51,7 @@ struct Options {
   bool lists_regions = false;
   bool aligns = false;
   DiffOptions diff;
+  RegionOptions regions;
 };
 
 bool is_vehicle(int label) { return label == 10 || label == 13 || label == 18 || label == 20; }
@@ -334,7 +335,7 @@ void judge_regions(const Survey& survey, const Survey& other, const MapDiff& dif
     if (sight.find(voxel + other_from_this) != Sight::kNeverSeen) ++seen_of[object];
   });
   std::map<int, std::set<std::size_t>> regions_of;
-  for (const ChangeRegion& region : find_regions(diff)) {
+  for (const ChangeRegion& region : find_regions(diff, options.regions)) {
     if (region.kind != kind) continue;
     std::map<int, std::size_t> counts;
     std::map<int, std::size_t> labels;
@@ -398,6 +399,8 @@ Options parse(int argc, char** argv) {
       options.poses = value();
     else if (argument == "--pose-sigma")
       options.diff.pose_sigma = std::stod(value());
+    else if (argument == "--reach")
+      options.regions.reach = std::stod(value());
     else if (argument == "--align")
       options.aligns = true;
     else if (argument == "--regions")

@@ -64,10 +64,10 @@ bool is_in(const Image& image, const Eigen::Vector2d& place) {
 
 void draw_regions(VoxelView& view, const Camera& camera, std::span<const ChangeRegion> regions,
                   const Eigen::Vector3d& anchor) {
-  const int size = letter_size(camera.size());
+  const int size = std::max(11, letter_size(camera.size()) * 3 / 4);
   const bool is_flat = !camera.is_perspective() && camera.map_from_camera().linear()(2, 2) < -0.99;
   for (std::size_t i = regions.size(); i-- > 0;) {
-    draw_path(view, camera, outline_of(regions[i], anchor, is_flat), std::max(1.5, size / 9.0));
+    draw_path(view, camera, outline_of(regions[i], anchor, is_flat), std::max(1.2, size / 14.0));
   }
   for (std::size_t i = std::min(regions.size(), kMostNumbers); i-- > 0;) {
     const ChangeRegion& region = regions[i];
