@@ -12,7 +12,7 @@
 #include <utility>
 
 #include "parking/segmentation/surface_class.h"
-#include "parking/voxel_groups.h"
+#include "vdbmap/core/voxel_groups.h"
 
 namespace vdbmap::parking {
 namespace {

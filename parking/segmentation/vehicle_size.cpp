@@ -8,7 +8,7 @@
 #include <limits>
 #include <numbers>
 
-#include "parking/voxel_groups.h"
+#include "vdbmap/core/voxel_groups.h"
 
 namespace vdbmap::parking {
 namespace {

@@ -10,10 +10,13 @@
 #include <unistd.h>
 
 #include "tests/support/folders.h"
+#include "tests/support/picture.h"
 #include "tests/support/run_command.h"
 #include "tests/support/sample_maps.h"
+#include "vdbmap/change/map_diff.h"
 #include "vdbmap/core/map_builder.h"
 #include "vdbmap/io/vdb/channel_codes.h"
+#include "vdbmap/io/vdb/diff_file.h"
 #include "vdbmap/io/vdb/map_channels.h"
 #include "vdbmap/io/vdb/map_file.h"
 
@@ -179,6 +182,42 @@ TEST_F(Blender, SeesNamesTypesPlacesAndColors) {
     // Rays are random.
     EXPECT_LT((seen / seen.sum() - color / color.sum()).norm(), 0.005) << seen.transpose();
   }
+}
+
+// A slab of ground, on it a block that appeared and one that vanished.
+TEST_F(Blender, DrawsAMapAndWhatChangedWithTheScriptForIt) {
+  const auto slab = [](const VoxelIndex& low, const VoxelIndex& high) {
+    std::vector<VoxelIndex> voxels;
+    for (const auto& voxel : openvdb::CoordBBox(low, high)) voxels.push_back(voxel);
+    return voxels;
+  };
+  std::vector<VoxelIndex> later = slab({0, 0, 0}, {39, 19, 0}), earlier = later;
+  for (const VoxelIndex& voxel : slab({5, 6, 1}, {12, 13, 6})) later.push_back(voxel);
+  for (const VoxelIndex& voxel : slab({25, 6, 1}, {32, 13, 6})) earlier.push_back(voxel);
+  const VoxelMap map = test::map_of_voxels(later);
+  DiffOptions options;
+  options.takes_unseen_as_empty = true;
+  save_map(folder_ / "map.vdb", map);
+  save_diff(folder_ / "diff.vdb", map_diff({test::map_of_voxels(earlier)}, {map}, options));
+
+  const test::CommandResult result = test::run_command(
+      *program_,
+      {"-b", "--factory-startup", "--python-exit-code", "1", "-P", VDBMAP_SOURCE_DIR "/tools/blender/open_map.py", "--",
+       folder_ / "map.vdb", "--diff", folder_ / "diff.vdb", "--render", folder_ / "picture.png", "--size", "160x90",
+       "--samples", "4"},
+      {.timeout = std::chrono::seconds(300)});
+  ASSERT_EQ(result.exit_code, 0) << result.out << result.err;
+  const Image picture = test::read_picture(folder_ / "picture.png");
+  ASSERT_EQ(picture.width(), 160);
+  int num_green = 0, num_red = 0, num_pale = 0;
+  for (const Rgb8& pixel : picture.pixels()) {
+    num_green += pixel.g > pixel.r + 50 && pixel.g > pixel.b ? 1 : 0;
+    num_red += pixel.r > pixel.g + 50 && pixel.r > pixel.b + 50 ? 1 : 0;
+    num_pale += std::abs(pixel.r - pixel.g) < 25 && std::abs(pixel.g - pixel.b) < 25 ? 1 : 0;
+  }
+  EXPECT_GT(num_green, 150);
+  EXPECT_GT(num_red, 150);
+  EXPECT_GT(num_pale, 1000);
 }
 
 // --- OpenVDB's Python module

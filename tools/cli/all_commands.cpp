@@ -13,6 +13,7 @@ Command import_command();
 Command merge_command();
 Command log_command();
 Command update_command();
+Command diff_command();
 Command odometry_command();
 Command localize_command();
 Command evaluate_command();
@@ -25,10 +26,10 @@ Command simulate_command();
 
 std::vector<Command> all_commands() {
   return {
-      build_command(),     info_command(),     query_command(),    check_command(),   export_command(),
-      import_command(),    merge_command(),    log_command(),      update_command(),  odometry_command(),
-      localize_command(),  evaluate_command(), render_command(),   segment_command(), spaces_command(),
-      occupancy_command(), web_command(),      simulate_command(),
+      build_command(),    info_command(),      query_command(),    check_command(),    export_command(),
+      import_command(),   merge_command(),     log_command(),      update_command(),   diff_command(),
+      odometry_command(), localize_command(),  evaluate_command(), render_command(),   segment_command(),
+      spaces_command(),   occupancy_command(), web_command(),      simulate_command(),
   };
 }
 

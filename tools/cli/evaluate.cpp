@@ -11,6 +11,7 @@
 #include "registration/evaluation/trajectory_plot.h"
 #include "tools/cli/command.h"
 #include "tools/cli/evaluation_text.h"
+#include "tools/cli/json_output.h"
 #include "tools/cli/map_output.h"
 #include "tools/cli/output.h"
 #include "tools/cli/reading.h"
@@ -27,30 +28,11 @@ struct EvaluateOptions {
   ScanSelection selection;
   double max_time_difference = registration::kMaxTimeDifference;
   std::filesystem::path plot;
-  bool has_json = false;
-  std::filesystem::path json;
+  JsonOutput json;
 };
 
 /// Estimated poses beside the true ones of the same scans.
 using Comparison = registration::TimeAssociation;
-
-std::string check_json_name(const std::string& name) {
-  if (name.empty() || name.ends_with(".json")) return "";
-  return "would write into '" + name + "', expected a name that ends in .json; put --json behind the poses";
-}
-
-// CLI11 takes the word behind --json for the file's name, so that a word that cannot be meant is refused.
-void add_json(CLI::App& app, EvaluateOptions& options) {
-  const auto take = [&options](const CLI::results_t& words) {
-    options.has_json = true;
-    options.json = words.front();
-    return true;
-  };
-  app.add_option("--json", take, "Print the result as JSON, or write it to FILE (.json) and print the table")
-      ->expected(0, 1)
-      ->check(check_json_name)
-      ->type_name("[FILE]");
-}
 
 void add_options(CLI::App& app, EvaluateOptions& options) {
   app.add_option("ESTIMATE", options.estimate, "Estimated poses (KITTI or TUM)")->type_name("FILE")->required();
@@ -70,13 +52,13 @@ void add_options(CLI::App& app, EvaluateOptions& options) {
   app.add_option("--plot", options.plot,
                  "Draw the plan view, the histograms and the figures into this .png or .jpg file")
       ->type_name("FILE");
-  add_json(app, options);
+  add_json_output(app, options.json, "the poses");
 }
 
 void check_outputs(const EvaluateOptions& options) {
   const std::vector<std::filesystem::path> inputs = {options.estimate, options.truth};
   if (!options.plot.empty()) check_output(options.plot, kPictureKind, inputs);
-  if (!options.json.empty()) check_output(options.json, kJsonKind, inputs);
+  if (!options.json.file.empty()) check_output(options.json.file, kJsonKind, inputs);
 }
 
 Comparison compare_by_time(const Trajectory& estimate, const Trajectory& truth, const EvaluateOptions& options) {
@@ -126,8 +108,8 @@ ExitCode run(const EvaluateOptions& options, const CommonOptions&) {
   evaluation.num_not_judged = poses.num_not_judged;
 
   if (!options.plot.empty()) write_plot(options, poses);
-  if (!options.json.empty()) write_json(options.json, json_of(evaluation));
-  if (options.has_json && options.json.empty()) {
+  if (!options.json.file.empty()) write_json(options.json.file, json_of(evaluation));
+  if (options.json.is_on_stdout()) {
     print_json(json_of(evaluation));
   } else {
     print_result(text_of(evaluation));

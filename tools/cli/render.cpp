@@ -26,6 +26,7 @@
 #include "vdbmap/io/file/text.h"
 #include "vdbmap/io/points/point_reader.h"
 #include "vdbmap/io/poses/trajectory_file.h"
+#include "vdbmap/io/vdb/diff_file.h"
 #include "vdbmap/store/city_window.h"
 
 namespace vdbmap::cli {
@@ -35,7 +36,8 @@ const std::map<std::string, View> kViews = {
     {"plan", View::kPlan}, {"perspective", View::kPerspective}, {"orbit", View::kOrbit}};
 const std::map<std::string, ColorBy> kColors = {{"rgb", ColorBy::kRgb},       {"height", ColorBy::kHeight},
                                                 {"normal", ColorBy::kNormal}, {"intensity", ColorBy::kIntensity},
-                                                {"label", ColorBy::kLabel},   {"epoch", ColorBy::kEpoch}};
+                                                {"label", ColorBy::kLabel},   {"epoch", ColorBy::kEpoch},
+                                                {"age", ColorBy::kAge},       {"change", ColorBy::kChange}};
 
 struct RenderCommandOptions {
   std::filesystem::path map;
@@ -45,6 +47,7 @@ struct RenderCommandOptions {
   std::string size = "1920x1080";
   std::vector<std::filesystem::path> trajectories;
   std::vector<std::filesystem::path> points;
+  std::filesystem::path diff;
   bool is_plain = false;
   ReadOptions read;
   RenderOptions render;
@@ -93,9 +96,10 @@ void add_options(CLI::App& app, RenderCommandOptions& options) {
                  "plan (from above), perspective (along the street) or orbit (all of it), [orbit]")
       ->check(CLI::IsMember(names_of(kViews)).description(""))
       ->type_name("NAME");
-  app.add_option(
-         "--color-by", options.color_by,
-         "rgb, height, normal, intensity, label or epoch; by default rgb where the map has colours, else height")
+  app.add_option("--color-by", options.color_by,
+                 "rgb, height, normal, intensity, label, epoch, age (how old each part of the map is) or change (with "
+                 "--diff); by "
+                 "default rgb where the map has colours, else height; change with --diff")
       ->check(CLI::IsMember(names_of(kColors)).description(""))
       ->type_name("NAME");
   app.add_option("--size", options.size, "Of the picture in pixels, [1920x1080]")->check(check_size)->type_name("WxH");
@@ -109,6 +113,11 @@ void add_options(CLI::App& app, RenderCommandOptions& options) {
       ->check(CLI::PositiveNumber.description(""))
       ->type_name("S");
   app.add_flag("--plain", options.is_plain, "Only the picture: no grid, scale bar, north arrow and legend");
+  app.add_option(
+         "--diff", options.diff,
+         "What `vdbmap diff EARLIER MAP -o` wrote: draw what appeared green, what vanished red, what changed amber, "
+         "and outline the regions")
+      ->type_name("FILE");
   add_overlay_options(app, options);
   add_read_options(app, options.read);
 }
@@ -143,7 +152,18 @@ void check_inputs(const RenderCommandOptions& options) {
   std::vector<std::filesystem::path> inputs = {options.map};
   inputs.insert(inputs.end(), options.trajectories.begin(), options.trajectories.end());
   inputs.insert(inputs.end(), options.points.begin(), options.points.end());
+  if (!options.diff.empty()) inputs.push_back(options.diff);
   check_output(options.output, kPictureKind, inputs);
+  if (options.diff.empty() && options.color_by == "change") {
+    throw std::invalid_argument("--color-by change needs --diff, the file that `vdbmap diff -o` wrote");
+  }
+}
+
+std::optional<MapDiff> read_diff(const RenderCommandOptions& options, RenderOverlays& overlays) {
+  if (options.diff.empty()) return std::nullopt;
+  MapDiff diff = load_diff(options.diff);
+  overlays.regions = find_regions(diff);
+  return diff;
 }
 
 void check_not_empty(const VoxelMap& map, const std::filesystem::path& path) {
@@ -152,7 +172,9 @@ void check_not_empty(const VoxelMap& map, const std::filesystem::path& path) {
 
 ExitCode run(const RenderCommandOptions& options, const CommonOptions& common) {
   check_inputs(options);
-  const RenderOverlays overlays = read_overlays(options);
+  RenderOverlays overlays = read_overlays(options);
+  const std::optional<MapDiff> diff = read_diff(options, overlays);
+  if (diff) overlays.diff = &*diff;
   const VoxelMap map = load_map_or_city(options.map);
   check_not_empty(map, options.map);
 
@@ -184,6 +206,7 @@ Command render_command() {
       "render", "Draw a map as a picture",
       "vdbmap render map.vdb -o street.png\n"
       "vdbmap render map.vdb -o plan.png --view plan --color-by height --trajectory poses.txt truth.txt\n"
+      "vdbmap render map2.vdb --diff diff.vdb -o changes.png --view plan\n"
       "vdbmap render map.vdb -o view.png --view perspective --camera=-5,0,1.5,20,-5 --points scan.ply",
       add_options, run);
 }

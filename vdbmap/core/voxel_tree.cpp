@@ -22,6 +22,12 @@ VoxelTree::VoxelTree(LargeVector<VoxelLeaf> leaves) : leaves_(std::move(leaves))
   }
 }
 
+std::size_t VoxelTree::num_voxels() const {
+  std::size_t count = 0;
+  for (const VoxelLeaf& leaf : leaves_) count += leaf.getValueMask().countOn();
+  return count;
+}
+
 openvdb::CoordBBox VoxelTree::voxel_box() const {
   openvdb::CoordBBox box;
   for (const VoxelLeaf& leaf : leaves_) leaf.evalActiveBoundingBox(box, /*visitVoxels=*/true);

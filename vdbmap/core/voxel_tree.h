@@ -44,6 +44,9 @@ class VoxelTree {
   /// The box around all occupied voxels; empty without one.
   openvdb::CoordBBox voxel_box() const;
 
+  /// Number of occupied voxels; counts them.
+  std::size_t num_voxels() const;
+
   std::size_t memory_bytes() const { return leaves_.capacity() * sizeof(VoxelLeaf) + slots_.capacity() * sizeof(Slot); }
 
   /// Lowest voxel of the leaf that covers `voxel`.

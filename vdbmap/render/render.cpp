@@ -10,9 +10,11 @@
 #include <stdexcept>
 
 #include "vdbmap/core/parallel.h"
+#include "vdbmap/render/change_scene.h"
 #include "vdbmap/render/decoration.h"
 #include "vdbmap/render/overlay.h"
 #include "vdbmap/render/plot_area.h"
+#include "vdbmap/render/region_outlines.h"
 #include "vdbmap/render/voxel_view.h"
 
 namespace vdbmap {
@@ -137,29 +139,44 @@ bool is_in_voxel(const VoxelLevel& level, const Camera& camera) {
          VoxelFinder(level).find(voxel_of_point(eye, voxels_per_metre)) != nullptr;
 }
 
-}  // namespace
-
-RenderResult render(const VoxelMap& map, const RenderOptions& options, const RenderOverlays& overlays) {
-  Image(options.size.width, options.size.height);  // refuses sizes before any work
-  if (map.levels.empty()) throw std::invalid_argument("the map has no levels");
+RenderResult render_level(const VoxelMap& map, const VoxelLevel& level, const VoxelColors& colors, const Camera& camera,
+                          const RenderOptions& options, const RenderOverlays& overlays) {
   const std::vector<PathOverlay> paths = paths_of(overlays, map.frame.anchor);
   const std::vector<PointsOverlay> points = points_of(overlays, map.frame.anchor);
-  const std::vector<Eigen::Vector3d> path = paths.empty() ? std::vector<Eigen::Vector3d>{} : paths[0].pieces[0];
-  const Camera camera =
-      choose_camera(map.finest(), options.view, options.size, local_numbers(options, map.frame.anchor), path);
-  const VoxelLevel& level = chosen_level(map, options.voxel_size, camera);
-  const VoxelColors colors(map, level, options.color_by);
-
   VoxelView view = view_voxels(level, colors, camera);
   if (options.has_decoration && options.view == View::kPlan) draw_metre_grid(view.image, camera, map.frame.anchor);
   for (const PointsOverlay& cloud : points) draw_points(view, camera, cloud, level.voxel_size());
   draw_paths(view, camera, paths, std::max(2.0, letter_size(options.size) / 5.0));
+  draw_regions(view, camera, overlays.regions, map.frame.anchor);
   if (options.has_decoration) {
     draw_scale(view.image, camera, view);
     draw_north_arrow(view.image, heading_deg(camera));
     draw_color_legend(view.image, colors.legend(), names_of(paths, points));
   }
   return {std::move(view.image), is_in_voxel(level, camera)};
+}
+
+Camera camera_of(const VoxelMap& map, const RenderOptions& options, const RenderOverlays& overlays) {
+  const std::vector<PathOverlay> paths = paths_of(overlays, map.frame.anchor);
+  const std::vector<Eigen::Vector3d> path = paths.empty() ? std::vector<Eigen::Vector3d>{} : paths[0].pieces[0];
+  return choose_camera(map.finest(), options.view, options.size, local_numbers(options, map.frame.anchor), path);
+}
+
+}  // namespace
+
+RenderResult render(const VoxelMap& map, const RenderOptions& options, const RenderOverlays& overlays) {
+  Image(options.size.width, options.size.height);  // refuses sizes before any work
+  if (map.levels.empty()) throw std::invalid_argument("the map has no levels");
+  const bool shows_changes = options.color_by.value_or(ColorBy::kChange) == ColorBy::kChange;
+  if (overlays.diff && shows_changes) {
+    ChangeScene scene = scene_of_changes(map, *overlays.diff);
+    const Camera camera = camera_of(map, options, overlays);
+    const VoxelColors colors(scene.map, scene.map.finest(), std::move(scene.changes));
+    return render_level(scene.map, scene.map.finest(), colors, camera, options, overlays);
+  }
+  const Camera camera = camera_of(map, options, overlays);
+  const VoxelLevel& level = chosen_level(map, options.voxel_size, camera);
+  return render_level(map, level, VoxelColors(map, level, options.color_by), camera, options, overlays);
 }
 
 }  // namespace vdbmap

@@ -5,6 +5,8 @@
 #include <string>
 #include <vector>
 
+#include "vdbmap/change/change_regions.h"
+#include "vdbmap/change/map_diff.h"
 #include "vdbmap/core/voxel_map.h"
 #include "vdbmap/io/poses/trajectory_file.h"
 #include "vdbmap/render/camera_choice.h"
@@ -33,6 +35,8 @@ struct NamedPoints {
   std::vector<Eigen::Vector3d> points;
 };
 struct RenderOverlays {
+  const MapDiff* diff = nullptr;      ///< whose later map this is: draws what vanished too, and colours by change
+  std::vector<ChangeRegion> regions;  ///< outlined with their numbers
   std::vector<NamedTrajectory> trajectories;  ///< red, green, blue, ... as in figure 8 of the paper
   std::vector<NamedPoints> points;            ///< magenta, cyan, ... as in its figures 5 to 7
 };
@@ -44,7 +48,7 @@ struct RenderResult {
 
 /// Draws a map without a display: voxels as cubes in sunlight under an open sky. The same pixels for any number of
 /// threads. Throws std::invalid_argument for a size out of range, a level or attribute that the map has not, a map
-/// without voxels and an impossible camera.
+/// without voxels, a diff of other maps and an impossible camera.
 RenderResult render(const VoxelMap& map, const RenderOptions& options = {}, const RenderOverlays& overlays = {});
 
 }  // namespace vdbmap

@@ -8,7 +8,9 @@
 #include <map>
 #include <set>
 #include <stdexcept>
+#include <utility>
 
+#include "vdbmap/change/change_colors.h"
 #include "vdbmap/render/label_colors.h"
 
 namespace vdbmap {
@@ -32,6 +34,8 @@ void check_available(const VoxelMap& map, const VoxelLevel& level, ColorBy color
   if (color_by == ColorBy::kIntensity) check_known(!level.channels().intensities.empty(), "intensity", "intensities");
   if (color_by == ColorBy::kLabel) check_known(!level.channels().labels.empty(), "label", "labels");
   if (color_by == ColorBy::kEpoch) check_known(!level.channels().last_epochs.empty(), "epoch", "epochs");
+  if (color_by == ColorBy::kAge) check_known(!level.channels().last_epochs.empty(), "age", "epochs");
+  if (color_by == ColorBy::kChange) throw std::invalid_argument("cannot colour by change without a diff");
 }
 
 std::size_t stride_of(std::size_t size) { return size / kMaxSamples + 1; }
@@ -85,6 +89,39 @@ std::vector<std::pair<std::string, Rgb8>> epoch_entries(const std::vector<std::i
   return entries;
 }
 
+// From green, just seen, over straw to purple, long not seen.
+Rgb8 age_color(std::int32_t age, std::int32_t oldest) {
+  const LinearColor fresh = linear_of(rgb8(0x1b7837)), middle = linear_of(rgb8(0xefe3b0)),
+                    old = linear_of(rgb8(0x6a2c83));
+  const float share = oldest > 0 ? static_cast<float>(age) / static_cast<float>(oldest) : 0;
+  const LinearColor color = share < 0.5f ? LinearColor(fresh + 2 * share * (middle - fresh))
+                                         : LinearColor(middle + (2 * share - 1) * (old - middle));
+  return pixel_of(color);
+}
+
+std::vector<std::pair<std::string, Rgb8>> age_entries(const std::vector<std::int32_t>& epochs) {
+  std::vector<std::pair<std::string, Rgb8>> entries;
+  const std::set<std::int32_t> known(epochs.begin(), epochs.end());
+  for (auto epoch = known.rbegin(); epoch != known.rend() && entries.size() < kMaxEpochs; ++epoch) {
+    const std::int32_t age = *known.rbegin() - *epoch;
+    const std::string name =
+        age == 0 ? "the latest, " : std::to_string(age) + (age == 1 ? " epoch ago, " : " epochs ago, ");
+    entries.emplace_back(name + std::to_string(*epoch), age_color(age, *known.rbegin() - *known.begin()));
+  }
+  return entries;
+}
+
+std::vector<std::pair<std::string, Rgb8>> change_entries(const std::vector<Change>& changes) {
+  std::vector<std::pair<std::string, Rgb8>> entries;
+  for (const Change change :
+       {Change::kAppeared, Change::kVanished, Change::kChanged, Change::kUnchanged, Change::kUnobserved}) {
+    if (std::ranges::find(changes, change) == changes.end()) continue;
+    const std::string name = change == Change::kUnobserved ? "not observed in the other survey" : name_of(change);
+    entries.emplace_back(name, rgb8(color_code_of(change)));
+  }
+  return entries;
+}
+
 // The labels of most voxels, in the order of their numbers.
 std::vector<std::pair<std::string, Rgb8>> label_entries(LabelScheme scheme, const std::vector<std::int32_t>& labels) {
   std::map<std::int32_t, std::size_t> counts;
@@ -125,6 +162,17 @@ VoxelColors::VoxelColors(const VoxelMap& map, const VoxelLevel& level, std::opti
       legend_.title = "last seen in epoch";
       legend_.entries = epoch_entries(level.channels().last_epochs);
       break;
+    case ColorBy::kAge:
+      legend_.title = "last seen in epoch";
+      legend_.entries = age_entries(level.channels().last_epochs);
+      if (!level.channels().last_epochs.empty()) {
+        const auto [first, last] = std::ranges::minmax(level.channels().last_epochs);
+        latest_epoch_ = last;
+        oldest_age_ = last - first;
+      }
+      break;
+    case ColorBy::kChange:
+      break;
     case ColorBy::kLabel:
       legend_.title = "class";
       legend_.entries = label_entries(map.label_scheme, level.channels().labels);
@@ -132,6 +180,22 @@ VoxelColors::VoxelColors(const VoxelMap& map, const VoxelLevel& level, std::opti
     case ColorBy::kRgb:
       break;
   }
+}
+
+VoxelColors::VoxelColors(const VoxelMap& map, const VoxelLevel& level, std::vector<Change> changes, bool keeps_colors)
+    : map_(map),
+      level_(level),
+      color_by_(ColorBy::kChange),
+      changes_(std::move(changes)),
+      keeps_colors_(keeps_colors && map.has_color) {
+  legend_.entries = change_entries(changes_);
+}
+
+LinearColor VoxelColors::color_of_change(std::size_t record) const {
+  const Change change = changes_[record];
+  const bool is_quiet = change == Change::kUnchanged || change == Change::kUnobserved;
+  if (keeps_colors_ && is_quiet) return vdbmap::color_of(level_.records()[record]).cast<float>();
+  return linear_of(rgb8(color_code_of(change)));
 }
 
 void VoxelColors::set_range(std::vector<double> values) {
@@ -164,6 +228,10 @@ LinearColor VoxelColors::color_of(const VoxelIndex& voxel, std::size_t record) c
       return scaled(level_.channels().intensities[record]);
     case ColorBy::kEpoch:
       return linear_of(category_color(static_cast<std::size_t>(level_.channels().last_epochs[record])));
+    case ColorBy::kAge:
+      return linear_of(age_color(latest_epoch_ - level_.channels().last_epochs[record], oldest_age_));
+    case ColorBy::kChange:
+      return color_of_change(record);
     case ColorBy::kLabel:
       return linear_of(label_color(map_.label_scheme, level_.channels().labels[record]));
   }

@@ -6,6 +6,7 @@
 #include <utility>
 #include <vector>
 
+#include "vdbmap/change/map_diff.h"
 #include "vdbmap/core/voxel_map.h"
 #include "vdbmap/render/color_scale.h"
 
@@ -19,6 +20,8 @@ enum class ColorBy {
   kIntensity,  ///< mean intensity
   kLabel,      ///< class
   kEpoch,      ///< epoch in which it was last seen
+  kAge,        ///< how many epochs before the latest it was last seen
+  kChange,     ///< what became of it between two maps; only with a diff
 };
 
 /// What explains the colours of a picture.
@@ -36,18 +39,27 @@ class VoxelColors {
   /// where the map does not know what is asked for.
   VoxelColors(const VoxelMap& map, const VoxelLevel& level, std::optional<ColorBy> color_by = std::nullopt);
 
+  /// The kind of change of each record of the level. What is unchanged is pale, or with `keeps_colors` has the colour
+  /// of its points where the map has them.
+  VoxelColors(const VoxelMap& map, const VoxelLevel& level, std::vector<Change> changes, bool keeps_colors = false);
+
   LinearColor color_of(const VoxelIndex& voxel, std::size_t record) const;
   const ColorLegend& legend() const { return legend_; }
 
  private:
   void set_range(std::vector<double> values);
   LinearColor scaled(double value) const;
+  LinearColor color_of_change(std::size_t record) const;
 
   const VoxelMap& map_;
   const VoxelLevel& level_;
   ColorBy color_by_;
   ColorLegend legend_;
   std::vector<LinearColor> scale_;  ///< colours of evenly spaced values from low to high
+  std::vector<Change> changes_;     ///< of each record, with a diff
+  bool keeps_colors_ = false;
+  std::int32_t latest_epoch_ = 0;
+  std::int32_t oldest_age_ = 0;  ///< [epochs]
 };
 
 }  // namespace vdbmap

@@ -31,8 +31,8 @@ struct EdgePixel {
 };
 
 /// What every pixel sees.
-struct Sight {
-  explicit Sight(const ImageSize& size)
+struct PixelSights {
+  explicit PixelSights(const ImageSize& size)
       : width(size.width),
         height(size.height),
         faces(static_cast<std::size_t>(width) * static_cast<std::size_t>(height)),
@@ -65,7 +65,7 @@ class Observer {
         voxel_size_(level.voxel_size()) {}
 
   // The rows of tiles from `top` on.
-  void look_at_middles(Sight& sight, int top) const {
+  void look_at_middles(PixelSights& sight, int top) const {
     for (int left = 0; left < sight.width; left += kTileSize) {
       const double begin = beams_.free_distance(left, top);
       for (int y = top; y < std::min(top + kTileSize, sight.height); ++y) {
@@ -74,7 +74,7 @@ class Observer {
     }
   }
 
-  void look_at_edges(Sight& sight, int y) const {
+  void look_at_edges(PixelSights& sight, int y) const {
     for (int x = 0; x < sight.width; ++x) {
       if (!is_at_edge(sight, x, y)) continue;
       EdgePixel pixel{x, {}};
@@ -89,7 +89,7 @@ class Observer {
   }
 
  private:
-  void look_at_middle(Sight& sight, int x, int y, double begin) const {
+  void look_at_middle(PixelSights& sight, int x, int y, double begin) const {
     const std::size_t i = sight.index(x, y);
     const auto hit = caster_.first_hit(camera_.ray_through({x + 0.5, y + 0.5}), {begin});
     sight.faces[i] = hit ? face_code(*hit) : kNoFace;
@@ -99,14 +99,14 @@ class Observer {
   }
 
   // Neighbours in one plane of voxels of a few pixels differ too little to be worth further rays.
-  bool is_edge(const Sight& sight, std::size_t a, std::size_t b) const {
+  bool is_edge(const PixelSights& sight, std::size_t a, std::size_t b) const {
     if (sight.faces[a] == sight.faces[b]) return false;
     if (sight.faces[a] == kNoFace || sight.faces[b] == kNoFace || sight.planes[a] != sight.planes[b]) return true;
     const double pixel = camera_.is_perspective() ? sight.distances[a] * camera_.pixel_width() : camera_.pixel_width();
     return voxel_size_ < pixel || voxel_size_ > 4 * pixel;
   }
 
-  bool is_at_edge(const Sight& sight, int x, int y) const {
+  bool is_at_edge(const PixelSights& sight, int x, int y) const {
     const std::size_t here = sight.index(x, y);
     return (x > 0 && is_edge(sight, here, sight.index(x - 1, y))) ||
            (x + 1 < sight.width && is_edge(sight, here, sight.index(x + 1, y))) ||
@@ -115,7 +115,7 @@ class Observer {
   }
 
   // Further rays of a pixel begin a little before what its neighbours see, which saves most of their way.
-  double nearest_around(const Sight& sight, int x, int y) const {
+  double nearest_around(const PixelSights& sight, int x, int y) const {
     float nearest = kFar;
     for (int j = std::max(0, y - 1); j <= std::min(sight.height - 1, y + 1); ++j) {
       for (int i = std::max(0, x - 1); i <= std::min(sight.width - 1, x + 1); ++i) {
@@ -138,8 +138,8 @@ void for_each_row(int height, const Body& body) {
       static_cast<std::size_t>(height), [&](std::size_t y) { body(static_cast<int>(y)); }, kRowsAtOnce);
 }
 
-Sight look(const VoxelLevel& level, const Camera& camera, FaceTable& table) {
-  Sight sight(camera.size());
+PixelSights look(const VoxelLevel& level, const Camera& camera, FaceTable& table) {
+  PixelSights sight(camera.size());
   const Observer observer(level, camera, table);
   const int num_tile_rows = (sight.height + kTileSize - 1) / kTileSize;
   parallel_for(static_cast<std::size_t>(num_tile_rows),
@@ -230,7 +230,7 @@ struct Haze {
 /// Turns what is seen into pixels.
 class Painter {
  public:
-  Painter(const Sight& sight, const FaceTable& table, const std::vector<LinearColor>& lit, const Camera& camera,
+  Painter(const PixelSights& sight, const FaceTable& table, const std::vector<LinearColor>& lit, const Camera& camera,
           const Haze& haze)
       : sight_(sight), table_(table), lit_(lit), camera_(camera), haze_(haze) {}
 
@@ -257,14 +257,14 @@ class Painter {
     return color + (haze_color() - color) * haze_.share(distance);
   }
 
-  const Sight& sight_;
+  const PixelSights& sight_;
   const FaceTable& table_;
   const std::vector<LinearColor>& lit_;
   const Camera& camera_;
   Haze haze_;
 };
 
-Haze haze_of(const Sight& sight) {
+Haze haze_of(const PixelSights& sight) {
   float nearest = kFar;
   float farthest = 0;
   for (const float distance : sight.distances) {
@@ -281,7 +281,7 @@ Haze haze_of(const Sight& sight) {
 VoxelView view_voxels(const VoxelLevel& level, const VoxelColors& colors, const Camera& camera) {
   Image image(camera.size().width, camera.size().height);
   FaceTable table(level.size());
-  Sight sight = look(level, camera, table);
+  PixelSights sight = look(level, camera, table);
   const std::vector<LinearColor> lit = light_faces(level, colors, camera, table);
   const Painter painter(sight, table, lit, camera, haze_of(sight));
   for_each_row(sight.height, [&](int y) { painter.paint_row(image, y); });

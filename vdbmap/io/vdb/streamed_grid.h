@@ -19,7 +19,7 @@ namespace vdbmap {
 
 /// A grid over all voxels of a level that makes its tree while it is written, some blocks at a time: the file is that
 /// of the whole tree, which would take 34 kB for every block of 128 voxels, however few of them are occupied. It can
-/// only be written. Keeps a reference to the level.
+/// only be written. Keeps a reference to the tree.
 template <typename Grid>
 class StreamedGrid final : public Grid {
  public:
@@ -27,7 +27,11 @@ class StreamedGrid final : public Grid {
   using ValueOf = std::function<Value(std::size_t record)>;
 
   StreamedGrid(const VoxelLevel& level, ValueOf value_of)
-      : Grid(openvdb::zeroVal<Value>()), level_(level), value_of_(std::move(value_of)) {
+      : StreamedGrid(level.tree(), level.size(), std::move(value_of)) {}
+
+  /// Of voxels without a level; value_of() gets what their leaves' transientData() count from.
+  StreamedGrid(const VoxelTree& tree, std::size_t num_voxels, ValueOf value_of)
+      : Grid(openvdb::zeroVal<Value>()), tree_(tree), num_voxels_(num_voxels), value_of_(std::move(value_of)) {
     for (std::size_t i = 0; i < leaves().size(); ++i) {
       const VoxelIndex block = origin_of<Block>(leaves()[i].origin());
       if (!blocks_.empty() && blocks_.back().origin == block) continue;
@@ -39,8 +43,8 @@ class StreamedGrid final : public Grid {
 
   openvdb::GridBase::Ptr copyGrid() override { return std::make_shared<StreamedGrid>(*this); }
   openvdb::GridBase::ConstPtr copyGrid() const override { return std::make_shared<const StreamedGrid>(*this); }
-  openvdb::Index64 activeVoxelCount() const override { return level_.size(); }
-  openvdb::CoordBBox evalActiveVoxelBoundingBox() const override { return level_.tree().voxel_box(); }
+  openvdb::Index64 activeVoxelCount() const override { return num_voxels_; }
+  openvdb::CoordBBox evalActiveVoxelBoundingBox() const override { return tree_.voxel_box(); }
 
   /// Of the whole tree, as a reader has it: what each kind of node costs is seen in trees of one or two leaves.
   openvdb::Index64 memUsage() const override {
@@ -101,7 +105,7 @@ class StreamedGrid final : public Grid {
     stream.write(reinterpret_cast<const char*>(&number), sizeof(number));
   }
 
-  std::span<const VoxelLeaf> leaves() const { return level_.leaves(); }
+  std::span<const VoxelLeaf> leaves() const { return tree_.leaves(); }
 
   // A region without its blocks: all of its cells that are none have the background's value.
   void write_region(std::ostream& stream, const VoxelIndex& origin, std::span<const Node> blocks) const {
@@ -149,7 +153,8 @@ class StreamedGrid final : public Grid {
     }
   }
 
-  const VoxelLevel& level_;
+  const VoxelTree& tree_;
+  std::size_t num_voxels_;
   ValueOf value_of_;
   Value background_ = openvdb::zeroVal<Value>();
   std::vector<Node> blocks_;

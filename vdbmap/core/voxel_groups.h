@@ -7,7 +7,7 @@
 
 #include "vdbmap/core/voxel_level.h"
 
-namespace vdbmap::parking {
+namespace vdbmap {
 
 /// Voxels that hang together, by the numbers of their records, rising.
 using VoxelGroup = std::vector<std::size_t>;
@@ -18,4 +18,4 @@ using VoxelGroup = std::vector<std::size_t>;
 std::vector<VoxelGroup> find_groups(const VoxelLevel& level, const std::vector<std::uint8_t>& is_member,
                                     std::int32_t reach);
 
-}  // namespace vdbmap::parking
+}  // namespace vdbmap

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "parking/voxel_groups.h"
+#include "vdbmap/core/voxel_groups.h"
 
 #include <algorithm>
 #include <cstdlib>
@@ -11,7 +11,7 @@
 #include "tests/support/random_points.h"
 #include "tests/support/sample_maps.h"
 
-namespace vdbmap::parking {
+namespace vdbmap {
 namespace {
 
 // Joins, pair by pair, until nothing changes.
@@ -57,4 +57,4 @@ TEST(VoxelGroups, AreThoseOfBruteForce) {
 }
 
 }  // namespace
-}  // namespace vdbmap::parking
+}  // namespace vdbmap

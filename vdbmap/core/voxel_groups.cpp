@@ -1,10 +1,10 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "parking/voxel_groups.h"
+#include "vdbmap/core/voxel_groups.h"
 
 #include <algorithm>
 #include <utility>
 
-namespace vdbmap::parking {
+namespace vdbmap {
 namespace {
 
 // Walks from a voxel to all that hang together with it.
@@ -56,4 +56,4 @@ std::vector<VoxelGroup> find_groups(const VoxelLevel& level, const std::vector<s
   return groups;
 }
 
-}  // namespace vdbmap::parking
+}  // namespace vdbmap
