@@ -1,0 +1,130 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Parking spaces and what each epoch says of them (spaces.json).
+import { SiteError, type Site } from './site.ts';
+import type { Vector } from './voxel_id.ts';
+
+export type State = 'occupied' | 'vacant' | 'unknown';
+export const STATES: readonly State[] = ['occupied', 'vacant', 'unknown'];
+
+/** What was found out about a space in one epoch. */
+export interface Finding {
+  epoch: string;
+  state: State;
+  confidence: number | null; // 0..1
+  vehiclePoints: number | null; // points of vehicles inside
+  raysThrough: number | null; // rays that passed through it
+}
+
+export interface Space {
+  id: string;
+  polygon: Vector[]; // [m, map-local] counter-clockwise, z is the ground
+  height: number; // [m]
+  length: number | null; // [m]
+  width: number | null; // [m]
+  headingDeg: number | null; // clockwise from north
+  kerbSide: string | null;
+  findings: Finding[];
+}
+
+export interface Turnover {
+  changes: number; // between epochs whose states are both known
+  known: number; // epochs with a known state
+}
+
+export type Filter = State | 'all' | 'changed';
+
+function numberOrNull(value: unknown): number | null {
+  return typeof value === 'number' && Number.isFinite(value) ? value : null;
+}
+
+function readFinding(json: any): Finding {
+  return {
+    epoch: String(json.epoch),
+    state: STATES.includes(json.state) ? json.state : 'unknown',
+    confidence: numberOrNull(json.confidence),
+    vehiclePoints: numberOrNull(json.vehicle_points),
+    raysThrough: numberOrNull(json.rays_through),
+  };
+}
+
+/** The spaces of spaces.json; throws SiteError where it holds none. */
+export function readSpaces(json: any): Space[] {
+  if (!Array.isArray(json?.spaces)) throw new SiteError('spaces.json: no list of spaces');
+  return json.spaces.map((space: any) => ({
+    id: String(space.id),
+    polygon: space.polygon,
+    height: space.height > 0 ? space.height : 1.6,
+    length: numberOrNull(space.length),
+    width: numberOrNull(space.width),
+    headingDeg: numberOrNull(space.heading_deg),
+    kerbSide: space.kerb_side ?? null,
+    findings: (space.states ?? []).map(readFinding),
+  }));
+}
+
+export function findingAt(space: Space, epoch: string): Finding | null {
+  return space.findings.find((finding) => finding.epoch === epoch) ?? null;
+}
+
+/** A space of which an epoch says nothing is unknown there. */
+export function stateAt(space: Space, epoch: string): State {
+  return findingAt(space, epoch)?.state ?? 'unknown';
+}
+
+/** The state in the epoch before, null in the first. */
+export function stateBefore(space: Space, epoch: string, epochs: readonly string[]): State | null {
+  const index = epochs.indexOf(epoch);
+  return index > 0 ? stateAt(space, epochs[index - 1]) : null;
+}
+
+/** Whether the epoch shows it taken where the one before showed it free, or the other way round. */
+export function isNew(space: Space, epoch: string, epochs: readonly string[]): boolean {
+  const before = stateBefore(space, epoch, epochs);
+  const now = stateAt(space, epoch);
+  return before !== null && before !== 'unknown' && now !== 'unknown' && before !== now;
+}
+
+export function matches(space: Space, filter: Filter, epoch: string, epochs: readonly string[]): boolean {
+  if (filter === 'all') return true;
+  if (filter === 'changed') return isNew(space, epoch, epochs);
+  return stateAt(space, epoch) === filter;
+}
+
+export function count(spaces: readonly Space[], filter: Filter, epoch: string, epochs: readonly string[]): number {
+  return spaces.filter((space) => matches(space, filter, epoch, epochs)).length;
+}
+
+/** How often a space went from taken to free or back; epochs that do not know are passed over. */
+export function turnover(space: Space, epochs: readonly string[]): Turnover {
+  const known = epochs.map((epoch) => stateAt(space, epoch)).filter((state) => state !== 'unknown');
+  const changes = known.filter((state, index) => index > 0 && state !== known[index - 1]).length;
+  return { changes, known: known.length };
+}
+
+/** Middle of the polygon, on the ground [m, map-local]. */
+export function centreOf(space: Space): Vector {
+  const mean = (axis: number) => space.polygon.reduce((sum, corner) => sum + corner[axis], 0) / space.polygon.length;
+  return [mean(0), mean(1), mean(2)];
+}
+
+/** Whether none of the spaces lies near the map: they are those of another place. */
+export function areElsewhere(spaces: readonly Space[], site: Site, margin = 50): boolean {
+  const { min, max } = site.bounds;
+  return spaces.length > 0 && spaces.every((space) => {
+    const centre = centreOf(space);
+    return [0, 1].some((axis) => centre[axis] < min[axis] - margin || centre[axis] > max[axis] + margin);
+  });
+}
+
+const NEIGHBOURHOOD = 40; // [m]
+
+/** Which way the row of spaces runs about one of them [rad, counter-clockwise from east, up to half a turn]; its own longer side where it is alone. */
+export function directionOfRow(space: Space, spaces: readonly Space[]): number {
+  const [x0, y0] = centreOf(space);
+  const offsets = spaces.map(centreOf).map(([x, y]) => [x - x0, y - y0]).filter(([x, y]) => Math.hypot(x, y) < NEIGHBOURHOOD);
+  const sides = space.polygon.map(([x, y], i) => [space.polygon[(i + 1) % space.polygon.length][0] - x, space.polygon[(i + 1) % space.polygon.length][1] - y]);
+  const longest = sides.reduce((best, side) => (Math.hypot(...side) > Math.hypot(...best) ? side : best));
+  // The main axis of their second moments.
+  const moment = (a: number, b: number) => offsets.reduce((sum, offset) => sum + offset[a] * offset[b], 0);
+  return offsets.length < 3 ? Math.atan2(longest[1], longest[0]) : 0.5 * Math.atan2(2 * moment(0, 1), moment(0, 0) - moment(1, 1));
+}
