@@ -40,9 +40,9 @@ describe('Page', () => {
 
   it('draws voxels where they belong', async () => {
     // By class, from above: tops are as bright as their colour. Places on open ground, away from shade and spaces.
-    const plan = { target: [24, 0, 0], height: 30 };
+    const plan = { target: [24, 0, 0], height: 50 };
     await visit.open([site], { hash: planAddress(plan, '&colour=label') });
-    const expected = [[[24, 2], [128, 64, 128]], [[42, -2], [128, 64, 128]], [[3, 7], [130, 90, 160]], [[24, 9.5], [150, 200, 110]], [[24, -11], [230, 180, 60]]];
+    const expected = [[[24, 2], [128, 64, 128]], [[42, -2], [128, 64, 128]], [[7.5, 8.5], [130, 90, 160]], [[24, 9.5], [150, 200, 110]], [[24, -11], [230, 180, 60]]];
     for (const [place, colour] of expected) {
       const [x, y] = await visit.placeOnPlan(place, plan);
       const seen = await visit.colourAt(x, y);
@@ -57,7 +57,7 @@ describe('Page', () => {
     const page = await visit.open([site], { hash: planAddress(plan) });
     const [x, y] = await visit.placeOnPlan([24.35, 1.25], plan);
     await page.mouse.click(x, y);
-    await page.getByText('Normal').waitFor();
+    await page.getByText('Normal', { exact: true }).waitFor();
     const card = await page.locator('.card').innerText();
     expect(card).toContain('Voxel of 10 cm');
     expect(card).toContain(textOfId(idOfVoxel([243, 12, 0])));
@@ -74,7 +74,7 @@ describe('Page', () => {
     const page = await visit.open([site], { hash: planAddress(plan), server: { hasRanges: false } });
     const [x, y] = await visit.placeOnPlan([24.35, 1.25], plan);
     await page.mouse.click(x, y);
-    await page.getByText('Normal').waitFor();
+    await page.getByText('Normal', { exact: true }).waitFor();
     expect((await page.locator('.card').innerText()).replaceAll(/\s+/g, ' ')).toContain('550024.340 5800001.250 50.060');
   });
 
@@ -94,7 +94,7 @@ describe('Page', () => {
   });
 
   it('shows before and after side by side', async () => {
-    const plan = { target: [18.3, 5.7, 0], height: 14 };
+    const plan = { target: [18.3, 4.9, 0], height: 14 }; // the line's grip is in the middle
     const page = await visit.open([site], { hash: planAddress(plan) });
     await page.getByRole('button', { name: 'Compare' }).click();
     await visit.full();
@@ -125,7 +125,7 @@ describe('Page', () => {
     const id = textOfId(idOfVoxel([243, 12, 0]));
     await page.getByRole('searchbox').fill(id);
     await page.keyboard.press('Enter');
-    await page.getByText('Normal').waitFor();
+    await page.getByText('Normal', { exact: true }).waitFor();
     expect(await page.locator('.card').innerText()).toContain(id);
   });
 

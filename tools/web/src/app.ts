@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // What the page shows and what happens when somebody touches it. The view is the only state; its parts are drawn from it.
 import { readAddress, writeAddress, type CameraMode, type ColourMode, type Pose, type View } from './data/address.ts';
+import { overviewOf, overviewPose } from './data/overview.ts';
 import { search, type Found } from './data/search.ts';
 import { isEmpty, type Site } from './data/site.ts';
 import { areElsewhere, centreOf, directionOfRow, type Filter, type Space } from './data/spaces.ts';
@@ -53,6 +54,7 @@ export class App {
   private wanted: VoxelIndex | null = null; // a voxel of the address or the search whose tile is still to come
   private measured: Vector[] | null = null; // while measuring: the points so far
   private settleTimer = 0;
+  private isAtHome = true; // nobody has moved yet
 
   constructor(root: HTMLElement, private readonly site: Site, budgetBytes: number) {
     document.title = site.name;
@@ -72,7 +74,7 @@ export class App {
     root.replaceChildren(this.panel.element, h('main', { class: 'stage' }, this.canvas, this.timeline.curtain, this.measureLabel, this.toolbar.element, this.legend.compass,
       this.card.element, this.legend.element, this.legend.scale, this.walkPad, this.timeline.element, this.notices.element), this.help);
     this.viewer = new Viewer(this.canvas, site, this.picture(), budgetBytes, {
-      moved: () => this.moved(), progress: (isLoading) => this.progress(isLoading), failed: (url) => this.notices.fail(url), drawn: (isLoading) => this.drawn(isLoading),
+      moved: () => this.moved(), progress: (isLoading) => this.progress(isLoading), failed: (url) => this.notices.fail(url, this.viewer.statistics().voxels === 0), arrived: () => this.arrived(), drawn: (isLoading) => this.drawn(isLoading),
     });
     this.start();
   }
@@ -85,6 +87,7 @@ export class App {
       this.panel.sayNoSpaces(`The ${spaces.length} spaces of this site lie elsewhere, not in this map.`);
     }
     this.viewer.setSpaces(this.spaces);
+    this.arrived();
     this.render();
   }
 
@@ -110,7 +113,7 @@ export class App {
     this.restore(readAddress(location.hash));
     if (this.site.epsg === null) this.notices.say('This map has local coordinates: its place on Earth is not known.');
     if (isEmpty(this.site)) this.notices.showHint('This map is empty: it holds no voxels.');
-    else if (!location.hash) this.notices.showHint('Drag to turn, scroll to zoom. Click a parking space, or anything else, to see what it is.');
+    else if (!location.hash) this.notices.showHint(`Drag to turn, scroll to zoom. Click ${this.site.spaces ? 'a parking space, or anything else,' : 'anything'} to see what it is.`);
   }
 
   private initialState(): State {
@@ -193,6 +196,7 @@ export class App {
       before: has(view.before) ? view.before! : null,
       split: view.split ?? 0.5, filter: view.filter ?? 'all', space: view.space ?? null, voxel: view.voxel ?? null,
     };
+    this.isAtHome = !view.pose;
     this.viewer.rig.set(view.pose ?? this.homePose());
     this.picked = null;
     const id = view.voxel ? parseVoxelId(view.voxel) : null;
@@ -201,17 +205,20 @@ export class App {
     this.render();
   }
 
-  /** From one end of the street, above the roofs. */
+  /** All of the map, or of its parking spaces. */
   private homePose(): Pose {
     const { min, max } = this.site.bounds;
-    const [length, width] = [max[0] - min[0], max[1] - min[1]];
-    const target: Vector = [(min[0] + max[0]) / 2, (min[1] + max[1]) / 2, min[2] + Math.min((max[2] - min[2]) * 0.12, 2)];
-    const along = length >= width ? 0 : Math.PI / 2;
-    const angle = along - 0.5; // [rad] of where the eye is, as seen from the middle
-    const aspect = this.canvas.clientWidth / Math.max(this.canvas.clientHeight, 1);
-    const distance = Math.max(0.62 * Math.max(length, width) + 0.35 * Math.min(length, width), 8) / Math.min(Math.max(aspect, 0.45) / 1.5, 1);
-    const level = distance * 0.72;
-    return { mode: 'orbit', target, eye: [target[0] - level * Math.cos(angle), target[1] + level * Math.sin(angle), target[2] + distance * 0.66] };
+    const corners: Vector[] = [min, max, [min[0], max[1], min[2]], [max[0], min[1], min[2]]];
+    const points = this.spaces.length > 2 ? this.spaces.map(centreOf) : this.viewer.samplePoints();
+    const overview = overviewOf(points.length > 0 ? points : corners);
+    // A row of spaces is narrow; what stands beside it belongs to the picture.
+    if (this.spaces.length > 2) overview.width = Math.max(overview.width, 15);
+    return overviewPose(overview, this.canvas.clientWidth / Math.max(this.canvas.clientHeight, 1));
+  }
+
+  /** Tiles have come: now it is known where the map is dense. */
+  private arrived(): void {
+    if (this.isAtHome) this.viewer.rig.set(this.homePose());
   }
 
   private moved(): void {
@@ -248,8 +255,7 @@ export class App {
   private switchCamera(mode: CameraMode): void {
     history.replaceState(null, '', this.address());
     const { target } = this.viewer.rig.pose();
-    const ground = this.viewer.groundBelow([target[0], target[1], target[2] + 3]) ?? target[2];
-    this.viewer.rig.switchTo(mode, ground);
+    this.viewer.rig.switchTo(mode, (mode === 'walk' && this.viewer.standingPlace(target)) || target);
     history.pushState(null, '', this.address());
     this.render();
   }
@@ -393,6 +399,7 @@ export class App {
       const { left, top } = this.canvas.getBoundingClientRect();
       this.click(event.clientX - left, event.clientY - top);
     });
+    for (const type of ['pointerdown', 'wheel', 'keydown']) window.addEventListener(type, () => { this.isAtHome = false; }, { passive: true });
     this.canvas.addEventListener('contextmenu', (event) => event.preventDefault());
     window.addEventListener('popstate', () => this.restore(readAddress(location.hash)));
     window.matchMedia('(prefers-reduced-motion: reduce)').addEventListener('change', (event) => { this.viewer.rig.isStill = event.matches; });

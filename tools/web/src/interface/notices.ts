@@ -32,11 +32,11 @@ export class Notices {
   }
 
   /** A part that could not be fetched: said once for all of them, with a button to try again. */
-  fail(url: string): void {
+  fail(url: string, isNothingShown: boolean): void {
     this.failed.add(url);
     const parts = this.failed.size === 1 ? 'A part of the map' : `${this.failed.size} parts of the map`;
     const again = h('button', { type: 'button', class: 'button', onclick: () => this.retry() }, 'Try again');
-    replaceContent(this.failure, icon('warning'), h('span', {}, `${parts} could not be loaded. The rest is shown.`), again);
+    replaceContent(this.failure, icon('warning'), h('span', {}, isNothingShown ? 'The map could not be loaded.' : `${parts} could not be loaded. The rest is shown.`), again);
     this.failure.hidden = false;
   }
 

@@ -66,6 +66,7 @@ export class Timeline {
   private fill(): void {
     if (this.epochs.length < 2) {
       this.element.append(this.name);
+      this.element.hidden = !this.epochs[0].date; // a single number says nothing
       return;
     }
     const ticks = h('div', { class: 'ticks', 'aria-hidden': 'true' }, ...this.epochs.map(() => h('i')));

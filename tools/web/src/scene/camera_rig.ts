@@ -96,11 +96,11 @@ export class CameraRig {
     this.onMove();
   }
 
-  /** The other mode at the same place; ground: height of what one stands on [m]. */
-  switchTo(mode: CameraMode, ground: number): void {
+  /** The other mode at the same place; ground: where a walker would stand. */
+  switchTo(mode: CameraMode, ground: Vector): void {
     if (mode === this.mode) return;
     const { mode: before, eye, target } = this.pose();
-    const at = before === 'walk' ? new Vector3(eye[0], eye[1], ground) : new Vector3(...target);
+    const at = before === 'walk' ? new Vector3(eye[0], eye[1], eye[2] - EYE_HEIGHT) : new Vector3(...target);
     const distance = before === 'walk' ? 40 : Math.max(new Vector3(...eye).distanceTo(new Vector3(...target)), 5);
     const backwards = new Vector3(...eye).sub(new Vector3(...target)).setZ(0);
     if (before === 'plan' || backwards.lengthSq() < 1e-6) backwards.set(0, -1, 0);
@@ -108,7 +108,7 @@ export class CameraRig {
     if (mode === 'plan') this.set({ mode, eye: [at.x, at.y, at.z + distance], target: at.toArray() });
     else if (mode === 'orbit') this.set({ mode, target: at.toArray(), eye: at.clone().addScaledVector(backwards, distance * 0.75).add(new Vector3(0, 0, distance * 0.6)).toArray() });
     else {
-      const stand = new Vector3(at.x, at.y, ground + EYE_HEIGHT);
+      const stand = new Vector3(ground[0], ground[1], ground[2] + EYE_HEIGHT);
       this.set({ mode, eye: stand.toArray(), target: stand.clone().addScaledVector(backwards, -5).toArray() });
     }
   }

@@ -85,7 +85,7 @@ export class Shading {
     pixelsPerUnit: { value: 1 },
     skyLow: { value: new Vector3() },
     skyHigh: { value: new Vector3() },
-    outline: { value: 16 },
+    outline: { value: 9 },
     viewHeight: { value: 1 },
   };
 

@@ -9,7 +9,7 @@ import type { Site } from '../data/site.ts';
 import { placeOf, VoxelTile, type SharedUniforms } from './voxel_tile.ts';
 
 /** Pixels that a voxel of a coarser level may be wide before the finer ones are fetched. */
-const ERROR_TARGET = 3.5;
+const ERROR_TARGET = 2.5;
 
 /** Fields of 3d-tiles-renderer that work but that its types leave out. */
 interface RendererState {
@@ -20,6 +20,9 @@ interface RendererState {
 interface LoadedTile {
   content: { uri: string };
   internal: { basePath: string };
+}
+interface FailedTile {
+  parent: { geometricError: number } | null;
 }
 const ROOT_FAILED = -1;
 
@@ -48,11 +51,11 @@ export class StreamBudget {
 export interface StreamEvents {
   changed(): void; // something new can be drawn
   failed(url: string): void;
-  loaded(): void; // all that the view needs is there
 }
 
 export class TileStream {
   readonly tiles: TilesRenderer;
+  private failures: { tile: FailedTile; coarser: FailedTile['parent']; error: number }[] = [];
   private readonly hasHistory: boolean;
   private camera: Camera | null = null;
   private readonly events: StreamEvents;
@@ -96,7 +99,13 @@ export class TileStream {
     for (const tile of this.state.usedSet) this.tiles.lruCache.markUnused(tile);
   }
 
+  /** Asks once more for what failed. */
   retry(): void {
+    for (const { tile, coarser, error } of this.failures) {
+      if (coarser) coarser.geometricError = error;
+      this.tiles.lruCache.remove(tile); // or it would count as loaded
+    }
+    this.failures = [];
     this.tiles.resetFailedTiles();
   }
 
@@ -127,6 +136,8 @@ export class TileStream {
           tile.transform = transform.premultiply(localFromEcef).toArray();
         }
       },
+      // For a tileset beside the page 3d-tiles-renderer 0.5 asks for //tiles/...
+      preprocessURL: (url: string) => url.replace(/([^:/])\/\/+/g, '$1/'),
       processTileModel: async (scene: Object3D, tile: LoadedTile) => this.replacePoints(scene, tile),
       calculateBytesUsed: (_tile: object, scene: Object3D | null) =>
         scene ? scene.children.reduce((sum, part) => sum + (part instanceof VoxelTile ? part.bytes : 0), 0) : 0,
@@ -137,7 +148,6 @@ export class TileStream {
   /** Voxels are placed by their numbers, which are exact, not by the tile's transform. */
   private replacePoints(scene: Object3D, tile: LoadedTile): void {
     const content = new URL(tile.content.uri, tile.internal.basePath.replace(/\/?$/, '/'));
-    const details = scene.userData.details ? new URL(scene.userData.details, content).href : null;
     const sources: Points[] = [];
     scene.traverse((part) => {
       if ('isPoints' in part) sources.push(part as Points);
@@ -148,7 +158,7 @@ export class TileStream {
     scene.scale.set(1, 1, 1);
     for (const source of sources) {
       const number = this.freeNumber();
-      const place = placeOf({ ...source.parent?.userData, ...source.userData }, details, this.hasHistory);
+      const place = placeOf({ ...source.parent?.userData, ...source.userData }, content, this.hasHistory);
       const voxels = new VoxelTile(source, place, this.shared, number);
       this.byNumber.set(number, voxels);
       voxels.userData.number = number;
@@ -173,8 +183,17 @@ export class TileStream {
 
   private listen(): void {
     for (const type of ['needs-update', 'load-model', 'load-tileset'] as const) this.tiles.addEventListener(type, () => this.events.changed());
-    this.tiles.addEventListener('tiles-load-end', () => this.events.loaded());
-    this.tiles.addEventListener('load-error', (event: { url: string | URL }) => this.events.failed(String(event.url)));
+    this.tiles.addEventListener('load-error', ({ tile, url }) => this.fail(tile as unknown as FailedTile | null, String(url)));
+  }
+
+  /** Where a tile is missing the coarser one stays: rather that than a hole. */
+  private fail(tile: FailedTile | null, url: string): void {
+    if (tile) {
+      const coarser = tile.parent;
+      this.failures.push({ tile, coarser, error: coarser?.geometricError ?? 0 });
+      if (coarser) coarser.geometricError = 0;
+    }
+    this.events.failed(url);
   }
 }
 

@@ -8,6 +8,7 @@ import { centreOfVoxel, type Vector, type VoxelIndex } from '../data/voxel_id.ts
 import { CameraRig } from './camera_rig.ts';
 import { colourTable, ROWS } from './colours.ts';
 import { Shading } from './shading.ts';
+import { standingPlace } from './standing_place.ts';
 import { outline, SpaceBoxes } from './space_boxes.ts';
 import { StreamBudget, TileStream } from './tile_stream.ts';
 import { VoxelTile, type SharedUniforms } from './voxel_tile.ts';
@@ -25,6 +26,7 @@ export interface ViewerEvents {
   moved(): void;
   progress(isLoading: boolean): void;
   failed(url: string): void;
+  arrived(): void; // the first tiles, before they are drawn
   drawn(isLoading: boolean): void; // voxels are on the screen, all that the view needs or some
 }
 
@@ -39,6 +41,9 @@ export interface Picture {
 
 const BADGE_REACH_PIXELS = 20;
 const SLOW_FRAME_MS = 60;
+const LOADING_POLL_MS = 60;
+const SAMPLES_PER_TILE = 2000;
+const COARSEST_GROUND = 0.5; // [m] coarser voxels say little of where one can stand
 const PICK_REACH = 7; // [CSS pixels] about the pointer: a point is drawn only where its middle is inside
 const PICK_SIDE = 2 * PICK_REACH + 1;
 const NO_VOXEL = 0xffffffff;
@@ -67,6 +72,7 @@ export class Viewer {
   private lastFrame = 0;
   private hasVoxels = false;
   private isContinuing = false;
+  private loadingTimer = 0;
   private resolution = 1; // of the picture while moving on a slow machine
   private groundAt = new Vector2(Infinity, 0);
 
@@ -189,6 +195,16 @@ export class Viewer {
     return (this.rig.mode === 'plan' ? 1 : distance) / this.pixelsPerUnit(this.canvasSize().height);
   }
 
+  /** Some of the voxels that are shown, evenly taken [m, map-local]. */
+  samplePoints(): Vector[] {
+    const points: Vector[] = [];
+    for (const tile of this.allTiles()) {
+      const step = Math.ceil(tile.count / SAMPLES_PER_TILE);
+      for (let i = 0; i < tile.count; i += step) points.push(centreOfVoxel(tile.voxelAt(i), tile.voxelSize));
+    }
+    return points;
+  }
+
   statistics() {
     let voxels = 0;
     for (const epoch of this.shownEpochs()) for (const tile of this.streams.get(epoch)?.visibleTiles() ?? []) voxels += tile.count;
@@ -235,7 +251,6 @@ export class Viewer {
     const stream = new TileStream(new URL(epoch.tileset, document.baseURI).href, this.site, this.budget, this.shared, this.byNumber, {
       changed: () => this.continueLoading(),
       failed: (url) => this.events.failed(url),
-      loaded: () => this.requestFrame(),
     });
     this.streams.set(id, stream);
     this.voxelScene.add(stream.tiles.group);
@@ -289,12 +304,23 @@ export class Viewer {
     const isLoading = this.updateStreams(width, height);
     const { voxels } = this.statistics();
     // Compiling shaders holds everything up, so first the tiles are asked for, then voxels are drawn, then all else.
+    if (voxels > 0 && !this.hasVoxels) this.events.arrived();
     if (voxels > 0 || !isLoading) this.draw(width, height);
     if (voxels > 0 && !this.hasVoxels) this.finishFirstPicture();
     this.events.progress(isLoading);
     if (isMoving || this.resolution < 1) this.requestFrame();
+    if (isLoading) this.watchLoading();
     if (voxels > 0) this.whenDrawn(() => this.events.drawn(isLoading));
     this.wasMoving = isMoving;
+  }
+
+  /** Nothing tells when the last of the tiles is there. */
+  private watchLoading(): void {
+    clearTimeout(this.loadingTimer);
+    this.loadingTimer = window.setTimeout(() => {
+      if ([...this.streams.values()].some((stream) => stream.isLoading)) this.watchLoading();
+      else this.requestFrame();
+    }, LOADING_POLL_MS);
   }
 
   private finishFirstPicture(): void {
@@ -435,6 +461,18 @@ export class Viewer {
     if (ground === null) return;
     this.groundAt.set(eye[0], eye[1]);
     this.rig.setGround(ground);
+  }
+
+  /** Near a place of the map; null where nobody could stand there. */
+  standingPlace(near: Vector): Vector | null {
+    return standingPlace(this.voxelCentres(), near);
+  }
+
+  private *voxelCentres(): Generator<Vector> {
+    for (const tile of this.allTiles()) {
+      if (tile.voxelSize > COARSEST_GROUND) continue;
+      for (let i = 0; i < tile.count; ++i) yield centreOfVoxel(tile.voxelAt(i), tile.voxelSize);
+    }
   }
 
   /** Height of the highest loaded voxel below a point, at most half a metre above a step and 8 m down; null where there is none. */

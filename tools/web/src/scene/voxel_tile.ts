@@ -80,9 +80,10 @@ export interface TilePlace {
   hasHistory: boolean; // whether changes and ages mean anything
 }
 
-/** From a node's extras; throws where they do not say. */
-export function placeOf(extras: { voxel_size?: number; min_index?: [number, number, number]; first_detail?: number }, details: string | null, hasHistory: boolean): TilePlace {
+/** From a node's extras and the URL of its tile; throws where they do not say. */
+export function placeOf(extras: { voxel_size?: number; min_index?: [number, number, number]; first_detail?: number; details?: string }, url: URL, hasHistory: boolean): TilePlace {
   if (!extras.voxel_size || !extras.min_index) throw new Error('a tile does not say where its voxels lie (voxel_size, min_index)');
+  const details = extras.details ? new URL(extras.details, url).href : null;
   return { voxelSize: extras.voxel_size, minIndex: extras.min_index, details, firstDetail: extras.first_detail ?? 0, hasHistory };
 }
 
