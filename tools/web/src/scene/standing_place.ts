@@ -27,9 +27,15 @@ function columnsOf(voxels: Iterable<Vector>, [x0, y0]: Vector): Map<string, Colu
   return columns;
 }
 
-/** The nearest such place to a point; voxels: centres [m]. Null where there is none within 25 m. */
+/** The nearest such place to a point, in the open rather than in a gap; voxels: centres [m]. Null where there is none within 25 m. */
 export function standingPlace(voxels: Iterable<Vector>, near: Vector): Vector | null {
   const columns = columnsOf(voxels, near);
+  return nearestFree(columns, near, 3) ?? nearestFree(columns, near, 1);
+}
+
+/** The nearest column with `margin` free ones on each side. */
+function nearestFree(columns: Map<string, Column>, near: Vector, margin: number): Vector | null {
+  const around = Array.from({ length: 2 * margin + 1 }, (_, index) => index - margin);
   const isFree = (i: number, j: number, ground: number): boolean => {
     const column = columns.get(`${i},${j}`);
     return column !== undefined && Math.abs(column.ground - ground) < STEP && column.heights.every((z) => z < ground + STEP || z > ground + HEADROOM);
@@ -40,7 +46,7 @@ export function standingPlace(voxels: Iterable<Vector>, near: Vector): Vector | 
     const place: Vector = [(i + 0.5) * CELL, (j + 0.5) * CELL, ground];
     const distance = Math.hypot(place[0] - near[0], place[1] - near[1]);
     if (best && best.distance <= distance) continue;
-    if ([-1, 0, 1].every((a) => [-1, 0, 1].every((b) => isFree(i + a, j + b, ground)))) best = { place, distance };
+    if (around.every((a) => around.every((b) => isFree(i + a, j + b, ground)))) best = { place, distance };
   }
   return best?.place ?? null;
 }

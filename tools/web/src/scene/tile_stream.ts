@@ -33,8 +33,8 @@ export class StreamBudget {
   constructor(bytes: number) {
     this.cache.maxBytesSize = bytes;
     this.cache.minBytesSize = 0.8 * bytes;
-    this.cache.minSize = 0;
     this.cache.maxSize = 2000;
+    this.cache.minSize = 1600; // below this only bytes count
   }
 
   /** One cache for all, which gives up first what the renderer would. */

@@ -41,6 +41,7 @@ export interface Picture {
 
 const BADGE_REACH_PIXELS = 20;
 const SLOW_FRAME_MS = 60;
+const FENCE_POLL_MS = 10;
 const LOADING_POLL_MS = 60;
 const SAMPLES_PER_TILE = 2000;
 const COARSEST_GROUND = 0.5; // [m] coarser voxels say little of where one can stand
@@ -71,6 +72,7 @@ export class Viewer {
   private wasMoving = false;
   private lastFrame = 0;
   private hasVoxels = false;
+  private readonly drawing: { fence: WebGLSync | null; callback: () => void }[] = [];
   private isContinuing = false;
   private loadingTimer = 0;
   private resolution = 1; // of the picture while moving on a slow machine
@@ -310,7 +312,7 @@ export class Viewer {
     this.events.progress(isLoading);
     if (isMoving || this.resolution < 1) this.requestFrame();
     if (isLoading) this.watchLoading();
-    if (voxels > 0) this.whenDrawn(() => this.events.drawn(isLoading));
+    if (this.hasVoxels) this.whenDrawn(() => this.events.drawn(isLoading));
     this.wasMoving = isMoving;
   }
 
@@ -329,18 +331,22 @@ export class Viewer {
     this.requestFrame();
   }
 
-  /** Calls back once the graphics card has done what it was told so far. */
+  /** Calls back, in order, once the graphics card has done what it was told so far. */
   private whenDrawn(callback: () => void): void {
     const gl = this.renderer.getContext() as WebGL2RenderingContext;
-    const fence = gl.fenceSync(gl.SYNC_GPU_COMMANDS_COMPLETE, 0);
+    this.drawing.push({ fence: gl.fenceSync(gl.SYNC_GPU_COMMANDS_COMPLETE, 0), callback });
     gl.flush();
-    const poll = () => {
-      if (!fence || gl.isContextLost() || gl.getSyncParameter(fence, gl.SYNC_STATUS) === gl.SIGNALED) {
-        gl.deleteSync(fence);
-        callback();
-      } else setTimeout(poll, 10);
-    };
-    setTimeout(poll, 0);
+    if (this.drawing.length === 1) setTimeout(() => this.pollDrawing(gl), 0);
+  }
+
+  private pollDrawing(gl: WebGL2RenderingContext): void {
+    const isDone = (fence: WebGLSync | null) => !fence || gl.isContextLost() || gl.getSyncParameter(fence, gl.SYNC_STATUS) === gl.SIGNALED;
+    while (this.drawing.length > 0 && isDone(this.drawing[0].fence)) {
+      const { fence, callback } = this.drawing.shift()!;
+      gl.deleteSync(fence);
+      callback();
+    }
+    if (this.drawing.length > 0) setTimeout(() => this.pollDrawing(gl), FENCE_POLL_MS);
   }
 
   /** On a slow machine a moving picture is coarser; once it rests it is drawn in full. */
