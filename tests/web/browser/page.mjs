@@ -32,7 +32,7 @@ export class Visit {
   }
 
   /** Opens the page on a site; waits for the full view unless told otherwise. */
-  async open(folders, { hash = '', server = {}, media = {}, size = { width: 1280, height: 800 }, wait = true } = {}) {
+  async open(folders, { hash = '', server = {}, media = {}, size = { width: 1060, height: 640 }, wait = true } = {}) {
     await this.close();
     this.messages = [];
     this.server = await serve([PAGE, ...folders], server);
@@ -49,9 +49,8 @@ export class Visit {
 
   /** Waits until all that the view needs is on the screen. */
   async full() {
-    await this.page.waitForTimeout(250);
+    await this.page.waitForTimeout(50);
     await this.page.waitForFunction(() => document.documentElement.dataset.view === 'full', null, { timeout: 60_000 });
-    await this.page.waitForTimeout(150);
   }
 
   /** Red, green, blue of a place of the window, 0..255. */

@@ -74,7 +74,7 @@ export class App {
     root.replaceChildren(this.panel.element, h('main', { class: 'stage' }, this.canvas, this.timeline.curtain, this.measureLabel, this.toolbar.element, this.legend.compass,
       this.card.element, this.legend.element, this.legend.scale, this.walkPad, this.timeline.element, this.notices.element), this.help);
     this.viewer = new Viewer(this.canvas, site, this.picture(), budgetBytes, {
-      moved: () => this.moved(), progress: (isLoading) => this.progress(isLoading), failed: (url) => this.notices.fail(url, this.viewer.statistics().voxels === 0), arrived: () => this.arrived(), drawn: (isLoading) => this.drawn(isLoading),
+      moved: () => this.moved(), progress: (isLoading) => this.progress(isLoading), failed: (url) => this.notices.fail(url), pending: () => { document.documentElement.dataset.view = 'loading'; }, arrived: () => this.arrived(), drawn: (isLoading) => this.drawn(isLoading),
     });
     this.start();
   }
@@ -228,6 +228,7 @@ export class App {
 
   private progress(isLoading: boolean): void {
     this.notices.progress(isLoading);
+    if (!isLoading) this.notices.sayWhetherAllFailed(this.viewer.statistics().voxels === 0);
     this.legend.place(this.viewer.metresPerPixel(), this.viewer.rig.bearing());
     this.placeMeasureLabel();
     if (this.wanted) this.pickWanted(isLoading);

@@ -9,7 +9,9 @@ export class Notices {
   readonly element = h('div', { class: 'notices' });
   private readonly bar = h('div', { class: 'progress', role: 'progressbar', 'aria-label': 'Loading the map', hidden: true });
   private readonly toast = h('div', { class: 'toast', role: 'status', 'aria-live': 'polite' });
-  private readonly failure = h('div', { class: 'failure', role: 'alert', hidden: true });
+  private readonly failureText = h('span');
+  private readonly failure = h('div', { class: 'failure', role: 'alert', hidden: true }, icon('warning'), this.failureText,
+    h('button', { type: 'button', class: 'button', onclick: () => this.retry() }, 'Try again'));
   private readonly hint = h('div', { class: 'hint', hidden: true });
   private timer = 0;
   private readonly failed = new Set<string>();
@@ -32,12 +34,16 @@ export class Notices {
   }
 
   /** A part that could not be fetched: said once for all of them, with a button to try again. */
-  fail(url: string, isNothingShown: boolean): void {
+  fail(url: string): void {
     this.failed.add(url);
     const parts = this.failed.size === 1 ? 'A part of the map' : `${this.failed.size} parts of the map`;
-    const again = h('button', { type: 'button', class: 'button', onclick: () => this.retry() }, 'Try again');
-    replaceContent(this.failure, icon('warning'), h('span', {}, isNothingShown ? 'The map could not be loaded.' : `${parts} could not be loaded. The rest is shown.`), again);
+    this.failureText.textContent = `${parts} could not be loaded. The rest is shown.`;
     this.failure.hidden = false;
+  }
+
+  /** Once nothing more is to come: whether there is no rest. */
+  sayWhetherAllFailed(isNothingShown: boolean): void {
+    if (this.failed.size > 0 && isNothingShown) this.failureText.textContent = 'The map could not be loaded.';
   }
 
   /** A few words for the first visit, gone with the first touch. */

@@ -27,6 +27,7 @@ export interface ViewerEvents {
   progress(isLoading: boolean): void;
   failed(url: string): void;
   arrived(): void; // the first tiles, before they are drawn
+  pending(): void; // what is on the screen is no longer true
   drawn(isLoading: boolean): void; // voxels are on the screen, all that the view needs or some
 }
 
@@ -137,6 +138,7 @@ export class Viewer {
   requestFrame(): void {
     if (this.isRequested) return;
     this.isRequested = true;
+    this.events.pending();
     requestAnimationFrame((now) => {
       this.isRequested = false;
       this.frame(now);
@@ -303,16 +305,19 @@ export class Viewer {
     this.adaptResolution(now, isMoving);
     this.resize(width, height);
     if (this.rig.mode === 'walk') this.followGround();
-    const isLoading = this.updateStreams(width, height);
+    let isLoading = this.updateStreams(width, height);
     const { voxels } = this.statistics();
     // Compiling shaders holds everything up, so first the tiles are asked for, then voxels are drawn, then all else.
-    if (voxels > 0 && !this.hasVoxels) this.events.arrived();
+    if (voxels > 0 && !this.hasVoxels) {
+      this.events.arrived();
+      isLoading = this.updateStreams(width, height); // the camera may have moved there
+    }
     if (voxels > 0 || !isLoading) this.draw(width, height);
     if (voxels > 0 && !this.hasVoxels) this.finishFirstPicture();
     this.events.progress(isLoading);
     if (isMoving || this.resolution < 1) this.requestFrame();
     if (isLoading) this.watchLoading();
-    if (this.hasVoxels) this.whenDrawn(() => this.events.drawn(isLoading));
+    if (this.hasVoxels) this.whenDrawn(() => this.events.drawn(isLoading || this.isRequested));
     this.wasMoving = isMoving;
   }
 
