@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// The pictures of tools/web/README.md: screenshots.mjs SITE_FOLDER PAGE_FOLDER OUTPUT_FOLDER
+// The pictures of tools/web/README.md: screenshots.mjs SITE_FOLDER PAGE_FOLDER OUTPUT_FOLDER [SPACE]; by default the first new space
 import { join } from 'node:path';
 import { openBrowser, serve } from './support.mjs';
 
-const [site, page, output] = process.argv.slice(2);
+const [site, page, output, chosen] = process.argv.slice(2);
 const WIDE = { width: 1280, height: 800 };
 const PICTURES = [
   { name: 'wide', size: WIDE },
@@ -24,8 +24,7 @@ for (const { name, size, media = {}, keys = [], space = false, colour = null } o
   await tab.emulateMedia({ reducedMotion: 'reduce', ...media });
   await tab.goto(server.url);
   await full();
-  // The first space that is new shows most of what there is to show.
-  if (space) await tab.evaluate(() => document.querySelector('.space:has(.new), .space')?.click());
+  if (space) await tab.evaluate((id) => document.querySelector(id ? `[data-space="${id}"]` : '.space:has(.new), .space')?.click(), chosen);
   for (const key of keys) await tab.keyboard.press(key);
   if (colour && !(await tab.locator(`#colour option[value=${colour}]`).isDisabled())) await tab.selectOption('#colour', colour);
   await full();

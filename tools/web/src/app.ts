@@ -24,7 +24,7 @@ import type { VoxelTile } from './scene/voxel_tile.ts';
 const SETTLE_MS = 300; // a view that rests this long gets into the address
 const CLICK_PIXELS = 5; // farther is a drag
 const PLACE_DISTANCE = 14; // [m] from which a place that was searched for is seen
-const SPACE_DISTANCE = 22; // [m]
+const SPACE_DISTANCE = 27; // [m]
 
 interface State {
   colour: ColourMode;

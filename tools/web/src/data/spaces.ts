@@ -22,7 +22,8 @@ export interface Space {
   length: number | null; // [m]
   width: number | null; // [m]
   headingDeg: number | null; // clockwise from north
-  kerbSide: string | null;
+  kerbSide: string | null; // N, E, S, W or words
+  isCandidate: boolean; // free kerb on which nobody was seen to park
   findings: Finding[];
 }
 
@@ -58,6 +59,7 @@ export function readSpaces(json: any): Space[] {
     width: numberOrNull(space.width),
     headingDeg: numberOrNull(space.heading_deg),
     kerbSide: space.kerb_side ?? null,
+    isCandidate: space.candidate === true,
     findings: (space.states ?? []).map(readFinding),
   }));
 }
@@ -116,15 +118,19 @@ export function areElsewhere(spaces: readonly Space[], site: Site, margin = 50):
   });
 }
 
-const NEIGHBOURHOOD = 40; // [m]
+const ROW_LENGTH = 20; // [m] how far off spaces are still of one row
+const ROW_WIDTH = 2.5; // [m] how far beside its axis
 
-/** Which way the row of spaces runs about one of them [rad, counter-clockwise from east, up to half a turn]; its own longer side where it is alone. */
+/** Which way the row of spaces runs about one of them [rad, counter-clockwise from east]: along its longer side, or across where others stand beside it. */
 export function directionOfRow(space: Space, spaces: readonly Space[]): number {
   const [x0, y0] = centreOf(space);
-  const offsets = spaces.map(centreOf).map(([x, y]) => [x - x0, y - y0]).filter(([x, y]) => Math.hypot(x, y) < NEIGHBOURHOOD);
   const sides = space.polygon.map(([x, y], i) => [space.polygon[(i + 1) % space.polygon.length][0] - x, space.polygon[(i + 1) % space.polygon.length][1] - y]);
   const longest = sides.reduce((best, side) => (Math.hypot(...side) > Math.hypot(...best) ? side : best));
-  // The main axis of their second moments.
-  const moment = (a: number, b: number) => offsets.reduce((sum, offset) => sum + offset[a] * offset[b], 0);
-  return offsets.length < 3 ? Math.atan2(longest[1], longest[0]) : 0.5 * Math.atan2(2 * moment(0, 1), moment(0, 0) - moment(1, 1));
+  const angle = Math.atan2(longest[1], longest[0]);
+  const inRow = (axis: number) => spaces.map(centreOf).filter(([x, y]) => {
+    const along = (x - x0) * Math.cos(axis) + (y - y0) * Math.sin(axis);
+    const beside = (y - y0) * Math.cos(axis) - (x - x0) * Math.sin(axis);
+    return Math.abs(along) < ROW_LENGTH && Math.abs(beside) < ROW_WIDTH;
+  }).length;
+  return inRow(angle + Math.PI / 2) > inRow(angle) ? angle + Math.PI / 2 : angle;
 }

@@ -7,7 +7,7 @@ import type { VoxelDetails } from '../data/voxel_details.ts';
 import { centreOfVoxel, idOfVoxel, textOfId, type Vector, type VoxelIndex } from '../data/voxel_id.ts';
 import { CHANGES } from '../scene/colours.ts';
 import { h, iconButton, replaceContent } from './dom.ts';
-import { formatCount, formatMetres, formatPercent, formatVector, plural, STATE_NAMES } from './format.ts';
+import { epochName, formatCount, formatMetres, formatPercent, formatVector, plural, STATE_NAMES } from './format.ts';
 import { stateMark } from './side_panel.ts';
 
 export interface PickedVoxel {
@@ -25,16 +25,25 @@ function table(rows: Row[]): HTMLElement {
   return h('dl', {}, ...shown.flatMap(([name, value]) => [h('dt', {}, name), h('dd', {}, value)]));
 }
 
+/** The survey that the spaces were found in says what stood there, without counts. */
+function hasEvidence(finding: Finding): boolean {
+  return (finding.vehiclePoints ?? 0) > 0 || (finding.raysThrough ?? 0) > 0;
+}
+
+const KERBS: Record<string, string> = { N: 'north', E: 'east', S: 'south', W: 'west' };
+
 function evidence(finding: Finding | null): string {
   if (!finding || finding.state === 'unknown') return 'Hidden, or not seen well enough';
+  if (!hasEvidence(finding)) return finding.state === 'occupied' ? 'A vehicle stands in it' : 'Nothing stands in it';
   if (finding.state === 'occupied') return finding.vehiclePoints === null ? 'A vehicle stands in it' : `${plural(finding.vehiclePoints, 'point')} of a vehicle inside`;
   return finding.raysThrough === null ? 'The scanner looked through it' : `${plural(finding.raysThrough, 'ray')} passed through it`;
 }
 
 function history(space: Space, epochs: readonly Epoch[], current: string, onEpoch: (id: string) => void): HTMLElement {
-  return h('ol', { class: 'history', 'aria-label': 'History' }, ...epochs.map(({ id, name }) => {
+  return h('ol', { class: 'history', 'aria-label': 'History' }, ...epochs.map((epoch) => {
+    const { id } = epoch;
     const state = stateAt(space, id);
-    return h('li', {}, h('button', { type: 'button', 'aria-current': id === current ? 'true' : null, onclick: () => onEpoch(id) }, stateMark(state), h('span', {}, name), h('span', { class: 'state' }, STATE_NAMES[state])));
+    return h('li', {}, h('button', { type: 'button', 'aria-current': id === current ? 'true' : null, onclick: () => onEpoch(id) }, stateMark(state), h('span', {}, epochName(epoch)), h('span', { class: 'state' }, STATE_NAMES[state])));
   }));
 }
 
@@ -63,10 +72,11 @@ export class Card {
       h('p', { class: `verdict ${state}` }, stateMark(state), h('b', {}, STATE_NAMES[state]), isNew(space, epoch, epochs) && h('span', { class: 'new' }, `new: was ${before}`)),
       h('p', {}, evidence(finding)),
       table([
-        finding?.confidence == null ? null : ['Confidence', formatPercent(finding.confidence)],
+        finding?.confidence == null || !hasEvidence(finding) ? null : ['Confidence', formatPercent(finding.confidence)],
         size ? ['Size', size] : null,
         space.headingDeg === null ? null : ['Heading', `${Math.round(space.headingDeg)}°`],
-        space.kerbSide ? ['Kerb', `${space.kerbSide} side`] : null,
+        space.kerbSide ? ['Kerb', `${KERBS[space.kerbSide] ?? space.kerbSide} side`] : null,
+        space.isCandidate ? ['Kind', 'free kerb, long enough for a car'] : null,
         epochs.length > 1 ? ['Turnover', known > 1 ? `${plural(changes, 'change')} in ${plural(known, 'date')}` : 'not known'] : null,
       ]),
       epochs.length > 1 ? h('h3', {}, 'History') : null,

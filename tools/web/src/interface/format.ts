@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Numbers as people read them.
+import type { Epoch } from '../data/site.ts';
 import type { Vector } from '../data/voxel_id.ts';
 
 const whole = new Intl.NumberFormat('en', { maximumFractionDigits: 0 });
@@ -25,6 +26,11 @@ export function formatPercent(share: number): string {
 export function formatDate(date: string): string {
   const parsed = new Date(`${date}T00:00:00Z`);
   return Number.isNaN(parsed.getTime()) ? date : parsed.toLocaleDateString('en-GB', { day: 'numeric', month: 'long', year: 'numeric', timeZone: 'UTC' });
+}
+
+/** What an epoch is called: its date in words where its name is only that. */
+export function epochName({ name, date }: Epoch): string {
+  return date !== null && name === date ? formatDate(date) : name;
 }
 
 export function plural(number: number, one: string, many = `${one}s`): string {

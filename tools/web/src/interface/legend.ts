@@ -4,7 +4,7 @@ import type { ColourMode } from '../data/address.ts';
 import type { Site } from '../data/site.ts';
 import { ageColour, CHANGES, css, heightColour } from '../scene/colours.ts';
 import { h, replaceContent } from './dom.ts';
-import { formatMetres } from './format.ts';
+import { epochName, formatMetres } from './format.ts';
 
 function entry(colour: string, name: string): HTMLElement {
   return h('li', {}, h('i', { style: `background:${colour}`, 'aria-hidden': 'true' }), name);
@@ -19,7 +19,7 @@ function contentOf(mode: ColourMode, site: Site): HTMLElement | null {
   }
   if (mode === 'label') return h('div', {}, heading('Class'), h('ul', {}, ...site.labels.map(({ name, color }) => entry(css(color), name))));
   if (mode === 'change') return h('div', {}, heading('Change'), h('ul', {}, ...CHANGES.map(({ name, colour }) => entry(css(colour), name)), entry('rgb(200 202 204)', 'As before')));
-  if (mode === 'age') return h('div', {}, heading('Last seen'), h('ul', {}, ...site.epochs.map(({ name }, index) => entry(css(ageColour(site.epochs.length - 1 - index, site.epochs.length)), name))));
+  if (mode === 'age') return h('div', {}, heading('Last seen'), h('ul', {}, ...site.epochs.map((epoch, index) => entry(css(ageColour(site.epochs.length - 1 - index, site.epochs.length)), epochName(epoch)))));
   return null;
 }
 

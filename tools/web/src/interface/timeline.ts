@@ -2,7 +2,7 @@
 // The dates of the map: one to look at, or two beside each other with a line between them to drag.
 import type { Epoch } from '../data/site.ts';
 import { h, icon, iconButton, replaceContent } from './dom.ts';
-import { formatDate } from './format.ts';
+import { epochName, formatDate } from './format.ts';
 
 export interface TimelineEvents {
   epoch(id: string): void;
@@ -28,7 +28,7 @@ export class Timeline {
     this.events = events;
     this.slider = h('input', { type: 'range', id: 'epoch', min: 0, max: Math.max(epochs.length - 1, 0), step: 1, 'aria-label': 'Date', oninput: () => events.epoch(epochs[Number(this.slider.value)].id) });
     this.compareButton = h('button', { type: 'button', class: 'button', 'aria-pressed': 'false', title: 'Before and after side by side (C)', onclick: () => this.toggleComparison() }, icon('compare'), h('span', {}, 'Compare'));
-    this.beforeField = h('select', { 'aria-label': 'Compare with', hidden: true, onchange: () => events.compare(this.beforeField.value) }, ...epochs.map(({ id, name }) => h('option', { value: id }, name)));
+    this.beforeField = h('select', { 'aria-label': 'Compare with', hidden: true, onchange: () => events.compare(this.beforeField.value) }, ...epochs.map((epoch) => h('option', { value: epoch.id }, epochName(epoch))));
     this.line = h('div', { class: 'line', role: 'slider', tabindex: 0, 'aria-label': 'Line between before and after', 'aria-valuemin': 0, 'aria-valuemax': 100, 'aria-orientation': 'horizontal' }, h('span', { class: 'grip' }, icon('previous'), icon('next')));
     this.curtain.append(this.names.before, this.names.after, this.line);
     this.addDragging();
@@ -37,16 +37,18 @@ export class Timeline {
 
   show(epoch: string, before: string | null, split: number): void {
     const index = this.epochs.findIndex(({ id }) => id === epoch);
-    const { name, date } = this.epochs[index];
+    const name = epochName(this.epochs[index]);
+    const { date } = this.epochs[index];
     this.slider.value = String(index);
     this.slider.setAttribute('aria-valuetext', name);
-    replaceContent(this.name, h('b', {}, name), date ? ` ${formatDate(date)}` : '');
+    replaceContent(this.name, h('b', {}, name), date && formatDate(date) !== name ? ` ${formatDate(date)}` : '');
     this.compareButton.setAttribute('aria-pressed', String(before !== null));
     this.beforeField.hidden = before === null || this.epochs.length < 3;
     this.curtain.hidden = before === null;
     if (before === null) return;
     this.beforeField.value = before;
-    this.names.before.textContent = this.epochs.find(({ id }) => id === before)?.name ?? before;
+    const earlier = this.epochs.find(({ id }) => id === before);
+    this.names.before.textContent = earlier ? epochName(earlier) : before;
     this.names.after.textContent = name;
     this.placeLine(split);
   }

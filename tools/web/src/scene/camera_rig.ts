@@ -9,6 +9,7 @@ export const EYE_HEIGHT = 1.7; // [m] on foot
 const FIELD_OF_VIEW_DEG = 50;
 const HALF_VIEW = Math.tan(MathUtils.degToRad(FIELD_OF_VIEW_DEG / 2));
 const FLIGHT_MS = 700;
+const ASIDE = 0.22; // [rad] from straight along a street, so that boxes show two sides
 const WALK_SPEED = 6; // [m/s]
 const MAX_PITCH = 1.45; // [rad]
 
@@ -181,9 +182,10 @@ export class CameraRig {
     const mode = this.mode === 'plan' ? 'plan' : 'orbit';
     if (mode === 'plan') return { mode, target: point, eye: [point[0], point[1], point[2] + distance * 1.6] };
     const bearing = this.bearing();
-    const angle = axis === null ? bearing : axis + (Math.cos(bearing - axis) < 0 ? Math.PI : 0);
-    const level = distance * 0.78;
-    return { mode, target: point, eye: [point[0] - level * Math.cos(angle), point[1] - level * Math.sin(angle), point[2] + distance * 0.62] };
+    const angle = axis === null ? bearing : axis + (Math.cos(bearing - axis) < 0 ? Math.PI : 0) + ASIDE;
+    const height = axis === null ? 0.62 : 0.75; // steeper between houses
+    const level = distance * Math.sqrt(1 - height * height);
+    return { mode, target: point, eye: [point[0] - level * Math.cos(angle), point[1] - level * Math.sin(angle), point[2] + distance * height] };
   }
 
   private controls(): OrbitControls {

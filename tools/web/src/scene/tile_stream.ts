@@ -16,6 +16,7 @@ interface RendererState {
   usedSet: Set<object>;
   stats: { queued: number; downloading: number; parsing: number };
   rootLoadingState: number;
+  processNodeQueue: { running: boolean }; // children of tiles that are to be looked at
 }
 interface LoadedTile {
   content: { uri: string };
@@ -115,7 +116,7 @@ export class TileStream {
 
   get isLoading(): boolean {
     const { stats } = this.state;
-    return (!this.tiles.root && !this.isFailed) || stats.queued + stats.downloading + stats.parsing > 0;
+    return (!this.tiles.root && !this.isFailed) || stats.queued + stats.downloading + stats.parsing > 0 || this.state.processNodeQueue.running;
   }
 
   get isFailed(): boolean {

@@ -58,7 +58,7 @@ export class Viewer {
   private readonly shading = new Shading();
   private readonly voxelScene = new Scene();
   private readonly markScene = new Scene();
-  private readonly streams = new Map<string, TileStream>();
+  private readonly streams = new Map<string, TileStream>(); // by tileset: several epochs may show the same
   private readonly boxes = new Map<string, SpaceBoxes>();
   private readonly byNumber = new Map<number, VoxelTile>();
   private readonly pickTarget = new WebGLRenderTarget(PICK_SIDE, PICK_SIDE);
@@ -70,6 +70,7 @@ export class Viewer {
   private spaces: readonly Space[] = [];
   private marks: ReturnType<typeof outline>[] = [];
   private isRequested = false;
+  private requests = 0; // of frames, so far
   private wasMoving = false;
   private lastFrame = 0;
   private hasVoxels = false;
@@ -138,6 +139,7 @@ export class Viewer {
   requestFrame(): void {
     if (this.isRequested) return;
     this.isRequested = true;
+    this.requests += 1;
     this.events.pending();
     requestAnimationFrame((now) => {
       this.isRequested = false;
@@ -176,7 +178,7 @@ export class Viewer {
 
   /** The finest voxel of a number that is loaded. */
   findVoxel(voxel: VoxelIndex): { tile: VoxelTile; point: number } | null {
-    const stream = this.streams.get(this.picture.epoch);
+    const stream = this.streams.get(this.tilesetOf(this.picture.epoch) ?? '');
     for (const tile of stream?.visibleTiles() ?? []) {
       if (tile.voxelSize > this.site.voxelSize * 1.01) continue;
       const point = tile.pointOf(voxel);
@@ -211,7 +213,7 @@ export class Viewer {
 
   statistics() {
     let voxels = 0;
-    for (const epoch of this.shownEpochs()) for (const tile of this.streams.get(epoch)?.visibleTiles() ?? []) voxels += tile.count;
+    for (const tile of this.allTiles()) voxels += tile.count;
     return { voxels, cachedBytes: this.budget.bytes, calls: this.renderer.info.render.calls };
   }
 
@@ -247,16 +249,23 @@ export class Viewer {
     return before && share < split ? before : epoch;
   }
 
-  private streamOf(id: string): TileStream | null {
-    const known = this.streams.get(id);
+  private tilesetOf(epoch: string): string | null {
+    return this.site.epochs.find(({ id }) => id === epoch)?.tileset ?? null;
+  }
+
+  /** Tilesets of what is shown, each once. */
+  private shownTilesets(): Set<string> {
+    return new Set(this.shownEpochs().map((epoch) => this.tilesetOf(epoch)).filter((tileset) => tileset !== null));
+  }
+
+  private streamOf(tileset: string): TileStream {
+    const known = this.streams.get(tileset);
     if (known) return known;
-    const epoch = this.site.epochs.find((candidate) => candidate.id === id);
-    if (!epoch) return null;
-    const stream = new TileStream(new URL(epoch.tileset, document.baseURI).href, this.site, this.budget, this.shared, this.byNumber, {
+    const stream = new TileStream(new URL(tileset, document.baseURI).href, this.site, this.budget, this.shared, this.byNumber, {
       changed: () => this.continueLoading(),
       failed: (url) => this.events.failed(url),
     });
-    this.streams.set(id, stream);
+    this.streams.set(tileset, stream);
     this.voxelScene.add(stream.tiles.group);
     return stream;
   }
@@ -299,6 +308,7 @@ export class Viewer {
   }
 
   private frame(now: number): void {
+    const request = this.requests;
     const { width, height } = this.canvasSize();
     this.rig.setAspect(width / height);
     const isMoving = this.rig.tick(now);
@@ -317,7 +327,7 @@ export class Viewer {
     this.events.progress(isLoading);
     if (isMoving || this.resolution < 1) this.requestFrame();
     if (isLoading) this.watchLoading();
-    if (this.hasVoxels) this.whenDrawn(() => this.events.drawn(isLoading || this.isRequested));
+    if (this.hasVoxels) this.whenDrawn(() => this.events.drawn(isLoading || request !== this.requests));
     this.wasMoving = isMoving;
   }
 
@@ -372,12 +382,11 @@ export class Viewer {
   }
 
   private updateStreams(width: number, height: number): boolean {
-    const shown = this.shownEpochs();
-    for (const [id, stream] of this.streams) if (!shown.includes(id)) stream.rest();
+    const shown = this.shownTilesets();
+    for (const [tileset, stream] of this.streams) if (!shown.has(tileset)) stream.rest();
     let isLoading = false;
-    for (const id of shown) {
-      const stream = this.streamOf(id);
-      if (!stream) continue;
+    for (const tileset of shown) {
+      const stream = this.streamOf(tileset);
       stream.update(this.rig.camera, width, height);
       isLoading ||= stream.isLoading;
     }
@@ -426,12 +435,13 @@ export class Viewer {
   }
 
   private show(epoch: string): void {
-    for (const [id, stream] of this.streams) stream.tiles.group.visible = id === epoch;
+    const shown = this.tilesetOf(epoch);
+    for (const [tileset, stream] of this.streams) stream.tiles.group.visible = tileset === shown;
     for (const [id, boxes] of this.boxes) for (const group of [boxes, boxes.marks, boxes.badges]) group.visible = id === epoch;
   }
 
   private *allTiles(): Generator<VoxelTile> {
-    for (const epoch of this.shownEpochs()) yield* this.streams.get(epoch)?.visibleTiles() ?? [];
+    for (const tileset of this.shownTilesets()) yield* this.streams.get(tileset)?.visibleTiles() ?? [];
   }
 
   /** What is under the pointer of an epoch's voxels, in a picture of their names. */
