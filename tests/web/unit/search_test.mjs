@@ -6,8 +6,9 @@ import { readSpaces } from '../../../tools/web/src/data/spaces.ts';
 import { idOfVoxel, textOfId } from '../../../tools/web/src/data/voxel_id.ts';
 import { ecefFromLocal, inverse, PLACE } from '../fixture/site.mjs';
 
+const CORNERS = [[0, 0, 0], [1, 0, 0], [1, 1, 0]];
 const site = { voxelSize: 0.1, epsg: 25832, anchor: [550000, 5800000, 50], geoidOffset: 43, bounds: { min: [0, -12, 0], max: [50, 12, 10] }, localFromEcef: inverse(ecefFromLocal(PLACE)) };
-const spaces = readSpaces({ spaces: [{ id: 'S1', polygon: [[0, 0, 0]], states: [] }, { id: '12', polygon: [[0, 0, 0]], states: [] }] });
+const spaces = readSpaces({ spaces: [{ id: 'S1', polygon: CORNERS, states: [] }, { id: '12', polygon: CORNERS, states: [] }] });
 const find = (text) => search(text, site, spaces);
 
 describe('Search', () => {

@@ -52,5 +52,7 @@ describe('Spaces', () => {
 
   it('cannot be read from anything', () => {
     expect(() => readSpaces({})).toThrow('spaces.json: no list of spaces');
+    expect(() => read({ id: 'a', polygon: [[0, 0, 0], [1, 0, 0]] })).toThrow('space a has no polygon of three corners');
+    expect(() => read({ id: 'a', polygon: [[0, 0], [1, 0], [1, 1]] })).toThrow('space a has no polygon');
   });
 });

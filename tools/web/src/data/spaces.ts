@@ -48,12 +48,19 @@ function readFinding(json: any): Finding {
   };
 }
 
+function readPolygon(space: any): Vector[] {
+  const { polygon } = space;
+  const isCorner = (corner: unknown) => Array.isArray(corner) && corner.length === 3 && corner.every((x) => Number.isFinite(x));
+  if (!Array.isArray(polygon) || polygon.length < 3 || !polygon.every(isCorner)) throw new SiteError(`spaces.json: space ${space.id} has no polygon of three corners or more`);
+  return polygon;
+}
+
 /** The spaces of spaces.json; throws SiteError where it holds none. */
 export function readSpaces(json: any): Space[] {
   if (!Array.isArray(json?.spaces)) throw new SiteError('spaces.json: no list of spaces');
   return json.spaces.map((space: any) => ({
     id: String(space.id),
-    polygon: space.polygon,
+    polygon: readPolygon(space),
     height: space.height > 0 ? space.height : 1.6,
     length: numberOrNull(space.length),
     width: numberOrNull(space.width),

@@ -7,6 +7,7 @@ import type { Space } from '../data/spaces.ts';
 import { centreOfVoxel, type Vector, type VoxelIndex } from '../data/voxel_id.ts';
 import { CameraRig } from './camera_rig.ts';
 import { colourTable, ROWS } from './colours.ts';
+import { nameInMiddle, NO_VOXEL, PICK_REACH, PICK_SIDE, surfaceOf } from './picking.ts';
 import { Shading } from './shading.ts';
 import { standingPlace } from './standing_place.ts';
 import { outline, SpaceBoxes } from './space_boxes.ts';
@@ -46,9 +47,6 @@ const FENCE_POLL_MS = 10;
 const LOADING_POLL_MS = 60;
 const SAMPLES_PER_TILE = 2000;
 const COARSEST_GROUND = 0.5; // [m] coarser voxels say little of where one can stand
-const PICK_REACH = 7; // [CSS pixels] about the pointer: a point is drawn only where its middle is inside
-const PICK_SIDE = 2 * PICK_REACH + 1;
-const NO_VOXEL = 0xffffffff;
 
 ColorManagement.enabled = false; // colours are sRGB from the table to the screen
 
@@ -505,30 +503,4 @@ export class Viewer {
     }
     return best;
   }
-}
-
-/** The name nearest to the middle of a picture of names, at most 3 pixels away. */
-function nameInMiddle(bytes: Uint8Array): number {
-  const names = new DataView(bytes.buffer);
-  let best = { name: NO_VOXEL, distance: 3.5 };
-  for (let row = 0; row < PICK_SIDE; ++row) {
-    for (let column = 0; column < PICK_SIDE; ++column) {
-      const name = names.getUint32(4 * (row * PICK_SIDE + column), true);
-      const distance = Math.hypot(row - PICK_REACH, column - PICK_REACH);
-      if (name !== NO_VOXEL && distance < best.distance) best = { name, distance };
-    }
-  }
-  return best.name;
-}
-
-/** Where a ray enters a voxel; its centre where rounding says that it misses. */
-function surfaceOf(voxel: VoxelIndex, voxelSize: number, ray: Ray): Vector {
-  const centre = new Vector3(...centreOfVoxel(voxel, voxelSize));
-  let [enter, leave] = [-Infinity, Infinity];
-  for (const axis of ['x', 'y', 'z'] as const) {
-    const [a, b] = [-0.5, 0.5].map((half) => (centre[axis] + half * voxelSize - ray.origin[axis]) / ray.direction[axis]);
-    enter = Math.max(enter, Math.min(a, b));
-    leave = Math.min(leave, Math.max(a, b));
-  }
-  return enter <= leave && Number.isFinite(enter) ? ray.at(enter, new Vector3()).toArray() : centre.toArray();
 }
