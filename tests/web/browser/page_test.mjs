@@ -130,10 +130,10 @@ describe('Page', () => {
   });
 
   it('measures a distance', async () => {
-    const plan = { target: [24, 0, 0], height: 20 };
+    const plan = { target: [22, 0, 0], height: 10 }; // a pixel is 1.5 cm
     const page = await visit.open([site], { hash: planAddress(plan) });
     await page.getByRole('button', { name: 'Measure a distance' }).click();
-    for (const place of [[20, 0], [23, 4]]) { // beside the card
+    for (const place of [[17.5, -1], [20.5, 3]]) { // beside the card
       const [x, y] = await visit.placeOnPlan(place, plan);
       await page.mouse.click(x, y);
     }

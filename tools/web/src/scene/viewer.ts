@@ -43,6 +43,7 @@ export interface Picture {
 
 const BADGE_REACH_PIXELS = 20;
 const SLOW_FRAME_MS = 60;
+const HURRY_MS = 12;
 const FENCE_POLL_MS = 10;
 const LOADING_POLL_MS = 60;
 const SAMPLES_PER_TILE = 2000;
@@ -73,7 +74,7 @@ export class Viewer {
   private lastFrame = 0;
   private hasVoxels = false;
   private readonly drawing: { fence: WebGLSync | null; callback: () => void }[] = [];
-  private isContinuing = false;
+  private hasArrived = false;
   private loadingTimer = 0;
   private resolution = 1; // of the picture while moving on a slow machine
   private groundAt = new Vector2(Infinity, 0);
@@ -94,6 +95,7 @@ export class Viewer {
     this.shared = this.makeUniforms();
     this.rig.setExtent(new Vector3(...site.bounds.max).distanceTo(new Vector3(...site.bounds.min)));
     this.compile();
+    setTimeout(() => this.hurry(), 0); // once the page has placed the camera
     new ResizeObserver(() => this.requestFrame()).observe(canvas);
     canvas.addEventListener('webglcontextrestored', () => this.requestFrame());
   }
@@ -260,7 +262,7 @@ export class Viewer {
     const known = this.streams.get(tileset);
     if (known) return known;
     const stream = new TileStream(new URL(tileset, document.baseURI).href, this.site, this.budget, this.shared, this.byNumber, {
-      changed: () => this.continueLoading(),
+      changed: () => this.requestFrame(),
       failed: (url) => this.events.failed(url),
     });
     this.streams.set(tileset, stream);
@@ -268,16 +270,20 @@ export class Viewer {
     return stream;
   }
 
-  /** Until there is a picture, fetching does not wait for the next frame. */
-  private continueLoading(): void {
+  /** Until there is a picture, fetching and unpacking do not wait for frames: the first may take its time. */
+  private hurry(): void {
+    if (this.hasVoxels) return;
+    const { width, height } = this.canvasSize();
+    this.rig.setAspect(width / height);
+    const isLoading = this.updateStreams(width, height);
+    if (!this.hasArrived && !isLoading && !this.allTiles().next().done) this.arrive();
+    setTimeout(() => this.hurry(), HURRY_MS);
+  }
+
+  private arrive(): void {
+    this.hasArrived = true;
+    this.events.arrived();
     this.requestFrame();
-    if (this.hasVoxels || this.isContinuing) return;
-    this.isContinuing = true;
-    queueMicrotask(() => {
-      this.isContinuing = false;
-      const { width, height } = this.canvasSize();
-      this.updateStreams(width, height);
-    });
   }
 
   private rebuildBoxes(): void {
@@ -313,15 +319,12 @@ export class Viewer {
     this.adaptResolution(now, isMoving);
     this.resize(width, height);
     if (this.rig.mode === 'walk') this.followGround();
-    let isLoading = this.updateStreams(width, height);
+    const isLoading = this.updateStreams(width, height);
     const { voxels } = this.statistics();
     // Compiling shaders holds everything up, so first the tiles are asked for, then voxels are drawn, then all else.
-    if (voxels > 0 && !this.hasVoxels) {
-      this.events.arrived();
-      isLoading = this.updateStreams(width, height); // the camera may have moved there
-    }
-    if (voxels > 0 || !isLoading) this.draw(width, height);
-    if (voxels > 0 && !this.hasVoxels) this.finishFirstPicture();
+    const canDraw = voxels > 0 && this.hasArrived;
+    if (canDraw || !isLoading) this.draw(width, height);
+    if (canDraw && !this.hasVoxels) this.finishFirstPicture();
     this.events.progress(isLoading);
     if (isMoving || this.resolution < 1) this.requestFrame();
     if (isLoading) this.watchLoading();
