@@ -12,10 +12,10 @@ build_packages=(
   fonts-dejavu-core libopenimageio-dev openimageio-tools
 )
 test_packages=(libgmock-dev libgtest-dev libpng-dev)
-# For the programs from npm that ours are compared with (tests/exchange/package.json); other distributions of Node.js bring npm along.
+# For the page of the command web and what the tests compare ours with; other distributions of Node.js bring npm along.
 command -v npm > /dev/null || test_packages+=(nodejs npm)
 benchmark_packages=(jq libbenchmark-dev time)
-ci_packages=(blender clang-format python3-numpy python3-openvdb python3-torch)
+ci_packages=(blender chromium clang-format python3-numpy python3-openvdb python3-torch)
 # The compiler of the presets with sanitizers.
 sanitizer_packages=(clang libclang-rt-14-dev)
 

@@ -12,7 +12,9 @@ build=build/$preset
 packages=("${build_packages[@]}" "${test_packages[@]}")
 if [[ $preset == asan ]]; then packages+=("${sanitizer_packages[@]}"); fi
 install_missing "${packages[@]}"
-npm ci --prefix tests/exchange --ignore-scripts --no-audit --no-fund || echo "tests against programs from npm will skip" # with CI=true that fails
+for folder in tests/exchange tests/web; do
+  npm ci --prefix $folder --ignore-scripts --no-audit --no-fund || echo "tests that need the packages of $folder will skip" # with CI=true that fails
+done
 cmake --preset "$preset"
 cmake --build --preset "$preset"
 rm -rf "$build/test_results" "$build/tests.xml"
