@@ -440,11 +440,13 @@ TEST_F(SiteTest, ADiffMarksTheLastEpochAndShowsWhatVanished) {
   const SiteWritten written = write_site(folder_ / "site", epochs, options);
   EXPECT_EQ(written.num_voxels, 6U) << "what vanished is no voxel of the later epoch";
   std::map<VoxelIndex, int> changes;
-  for (const auto& [voxel, point] : points_of_levels(folder_ / "site" / "tileset_2.json")[kEdge]) {
+  const Points later = points_of_levels(folder_ / "site" / "tileset_2.json")[kEdge];
+  for (const auto& [voxel, point] : later) {
     changes[voxel] = point.attributes[1];
   }
   EXPECT_EQ(changes, (std::map<VoxelIndex, int>{{{0, 0, 0}, 0}, {{1, 0, 0}, 0}, {{2, 0, 0}, 2}, {{900, 0, 0}, 1}}));
-  for (const auto& [voxel, point] : points_of_levels(folder_ / "site" / "tileset_1.json")[kEdge]) {
+  const Points earlier = points_of_levels(folder_ / "site" / "tileset_1.json")[kEdge];
+  for (const auto& [voxel, point] : earlier) {
     EXPECT_EQ(point.attributes[1], 0);
   }
   EXPECT_EQ(nlohmann::json::parse(test::read_raw(folder_ / "site" / "site.json"))["attributes"]["change"], true);
