@@ -49,6 +49,9 @@ void add_options(CLI::App& app, WebCommandOptions& options) {
   app.add_option("-o,--output", options.output, "Write the site to this folder")->type_name("FOLDER");
   app.add_option("--epoch-names", options.epoch_names, "What the epochs are called: 2023-03,2023-09")
       ->type_name("NAME,...");
+  app.add_option("--diff", options.site.diff,
+                 "Mark what changed in the last epoch: a diff of it and the one before (.vdb)")
+      ->type_name("FILE");
   app.add_option("--spaces", options.site.spaces,
                  "Parking spaces and their states (GeoJSON of spaces or occupancy), a file an epoch, the latest last")
       ->type_name("FILE...");

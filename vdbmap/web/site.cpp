@@ -10,9 +10,12 @@
 
 #include <nlohmann/json.hpp>
 
+#include "vdbmap/core/error.h"
 #include "vdbmap/core/voxel_map.h"
+#include "vdbmap/io/vdb/change_marks.h"
 #include "vdbmap/render/label_colors.h"
 #include "vdbmap/store/city_folder.h"
+#include "vdbmap/web/label_code.h"
 #include "vdbmap/web/site_folder.h"
 #include "vdbmap/web/site_placement.h"
 #include "vdbmap/web/site_source.h"
@@ -159,7 +162,7 @@ std::string site_json(const SiteFrame& site, const std::vector<EpochWritten>& ep
       {"attributes",
        {{"color", any_has(epochs, &EpochWritten::has_color)},
         {"label", any_has(epochs, &EpochWritten::has_label)},
-        {"change", false},
+        {"change", !options.diff.empty()},
         {"epoch", any_has(epochs, &EpochWritten::has_age)}}},
       {"label_scheme", text_of(site.label_scheme)},
       {"labels", labels_json(epochs, site.label_scheme)},
@@ -169,12 +172,23 @@ std::string site_json(const SiteFrame& site, const std::vector<EpochWritten>& ep
   return json.dump(1, ' ', false, Json::error_handler_t::replace) + "\n";
 }
 
-EpochWritten write_epoch(const SiteSource& source, const std::string& id, const SiteEpoch& epoch, SiteFolder& folder,
-                         const SitePlacement& placement, const SiteOptions& options) {
+// Marks of a diff of maps like those of the site.
+std::optional<ChangeMarks> load_marks(const SiteFrame& site, const SiteOptions& options) {
+  if (options.diff.empty()) return std::nullopt;
+  ChangeMarks marks = load_change_marks(options.diff);
+  if (marks.frame != site.frame || marks.level.voxel_size() != site.grid.finest_voxel_size) {
+    throw IoError::malformed(options.diff, "is of maps with another anchor, EPSG code or voxel size");
+  }
+  return marks;
+}
+
+EpochWritten write_epoch(const SiteSource& source, const SiteChanges& changes, const std::string& id,
+                         const SiteEpoch& epoch, SiteFolder& folder, const SitePlacement& placement,
+                         const SiteOptions& options) {
   EpochWritten written{id,
                        epoch.name.empty() ? id : epoch.name,
                        "tileset_" + id + ".json",
-                       write_tiles(source, folder, options.on_block_done),
+                       write_tiles(source, changes, folder, options.on_block_done),
                        source.has_channel("last_epoch"),
                        source.has_channel("label"),
                        source.layout().has_color};
@@ -242,6 +256,7 @@ SiteWritten write_site(const std::filesystem::path& folder, const std::vector<Si
   const SiteFrame site = frame_of(sources.front());
   for (const SiteSource& source : sources) check_alike(site, source, sources.front());
   const SitePlacement placement(site.frame, options.geoid_offset);
+  const std::optional<ChangeMarks> marks = load_marks(site, options);
   std::size_t blocks = 0;
   for (const SiteSource& source : sources) blocks += num_blocks(source);
 
@@ -249,7 +264,9 @@ SiteWritten write_site(const std::filesystem::path& folder, const std::vector<Si
   options.on_tiles_begun(blocks);
   std::vector<EpochWritten> written;
   for (std::size_t i = 0; i < epochs.size(); ++i) {
-    written.push_back(write_epoch(sources[i], std::to_string(i + 1), epochs[i], output, placement, options));
+    SiteChanges changes;
+    if (marks && i + 1 == epochs.size()) changes = {&marks->level, i > 0 ? &sources[i - 1] : nullptr};
+    written.push_back(write_epoch(sources[i], changes, std::to_string(i + 1), epochs[i], output, placement, options));
   }
   if (!options.page.empty()) output.put_folder(options.page);
   SiteWritten summary = summary_of(written, output);

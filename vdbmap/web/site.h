@@ -20,6 +20,7 @@ struct SiteEpoch {
 struct SiteOptions {
   std::string name;                           ///< of the site, as it is shown
   std::vector<std::string> epoch_names;       ///< as they are shown; empty: dates of spaces, names of maps
+  std::filesystem::path diff;                 ///< of the last two epochs (.vdb); empty: changes are not shown
   std::vector<std::filesystem::path> spaces;  ///< GeoJSON of parking spaces, a file an epoch; see read_site_spaces()
   double geoid_offset = 0;                    ///< [m] see GeodeticTransform
   std::filesystem::path page;                 ///< folder of the built page, copied into the site; empty: the data alone
@@ -40,15 +41,16 @@ struct SiteWritten {
 };
 
 /// Writes maps as a site: tiles (OGC 3D Tiles 1.1) of every epoch, from the earliest to the latest, what is shown of
-/// picked voxels, parking spaces, and the page. Files of spaces are those of the latest epochs; where there are more of
-/// them than maps, the last map stands for the later epochs too, which are called by the dates of their files. The
-/// folder appears whole; a site that was there is replaced, and files of equal content are taken over from it. Equal
-/// maps give equal bytes, for any number of threads.
+/// picked voxels, what changed, parking spaces, and the page. A diff marks the voxels of the last epoch, and adds to it
+/// those that vanished: as the epoch before has them, else in the colour of the diff. Files of spaces are those of the
+/// latest epochs; where there are more of them than maps, the last map stands for the later epochs too, which are
+/// called by the dates of their files. The folder appears whole; a site that was there is replaced, and files of equal
+/// content are taken over from it. Equal maps give equal bytes, for any number of threads.
 ///
 /// Throws std::invalid_argument without epochs, with names of another number of them, where their anchors, EPSG codes,
-/// voxel sizes or label schemes differ and for EPSG codes that PROJ does not know; IoError for maps and spaces that
-/// cannot be read, maps without voxels, spaces of another place, and for a folder that cannot be written or holds
-/// something else.
+/// voxel sizes or label schemes differ and for EPSG codes that PROJ does not know; IoError for maps, diffs and spaces
+/// that cannot be read, maps without voxels, diffs and spaces of another place, and for a folder that cannot be written
+/// or holds something else.
 SiteWritten write_site(const std::filesystem::path& folder, const std::vector<SiteEpoch>& epochs,
                        const SiteOptions& options);
 

@@ -4,15 +4,17 @@
 #include <algorithm>
 #include <cmath>
 #include <map>
+#include <optional>
 #include <set>
+#include <span>
 #include <string>
 #include <utility>
 #include <vector>
 
-#include "vdbmap/core/hierarchy.h"
 #include "vdbmap/core/map_tiles.h"
 #include "vdbmap/core/parallel.h"
 #include "vdbmap/web/glb.h"
+#include "vdbmap/web/marked_level.h"
 #include "vdbmap/web/tile_points.h"
 #include "vdbmap/web/voxel_details.h"
 
@@ -48,17 +50,24 @@ std::set<QuadTile> blocks_of(const SiteSource& source, const SiteGrid& grid) {
 }
 
 // What a block needs to be seen as it is in the whole: its own voxels, and around them a voxel of its highest level.
-VoxelLevel load_block(const SiteSource& source, const QuadTile& block, const SiteGrid& grid) {
+openvdb::CoordBBox box_around(const QuadTile& block, const SiteGrid& grid) {
   const std::int32_t margin = std::max(1 << block.level, 8);
   openvdb::CoordBBox box = columns_of(block, 0, grid);
   for (const int axis : {0, 1}) {
     box.min()[axis] -= margin;
     box.max()[axis] += margin;
   }
-  return source.load(box);
+  return box;
 }
 
-VoxelLevel parents_of(const VoxelLevel& level) { return coarsen(level, 2, 2 * level.voxel_size()); }
+MarkedLevel load_block(const SiteSource& source, const SiteChanges& changes, const QuadTile& block,
+                       const SiteGrid& grid) {
+  const openvdb::CoordBBox box = box_around(block, grid);
+  VoxelLevel level = source.load(box);
+  if (!changes.marks) return {std::move(level), std::nullopt};
+  const std::optional<VoxelLevel> before = changes.before ? std::optional(changes.before->load(box)) : std::nullopt;
+  return with_marks(level, cut_leaves(*changes.marks, box), before ? &*before : nullptr);
+}
 
 using LeavesOfTiles = std::map<QuadTile, std::vector<const VoxelLeaf*>>;
 
@@ -87,16 +96,19 @@ class TileWriter {
       : source_(source), grid_(grid), folder_(folder) {}
 
   // Writes the tiles of a level that lie in `own`; what is around that is looked at only.
-  void write_level(const VoxelLevel& level, std::int32_t number, const openvdb::CoordBBox& own) {
+  void write_level(const MarkedLevel& marked, std::int32_t number, const openvdb::CoordBBox& own) {
+    const VoxelLevel& level = marked.voxels;
     const std::vector<AirFaces> faces = air_faces(level);
-    const TileLevel tile_level{level, faces, {}, source_.layout().label_scheme, source_.newest_epoch()};
+    const std::span<const std::int32_t> marks =
+        marked.marks ? std::span(marked.marks->channels().labels) : std::span<const std::int32_t>();
+    const TileLevel tile_level{level, faces, marks, source_.layout().label_scheme, source_.newest_epoch()};
     const LeavesOfTiles tiles = leaves_of_tiles(level, number, own, grid_);
     const std::vector<std::pair<QuadTile, std::vector<const VoxelLeaf*>>> list(tiles.begin(), tiles.end());
     std::vector<WrittenTile> written(list.size());
     parallel_for(list.size(),
                  [&](std::size_t i) { written[i] = write_tile(tile_level, list[i].first, list[i].second); });
     for (WrittenTile& tile : written) add(std::move(tile));
-    if (number == 0) count(level, tiles);
+    if (number == 0) count(tile_level, tiles);
   }
 
   SiteTiles finish(std::int32_t num_levels) {
@@ -144,11 +156,16 @@ class TileWriter {
     tiles_.files.emplace(written.file.tile, std::move(written.file));
   }
 
-  void count(const VoxelLevel& level, const LeavesOfTiles& tiles) {
+  // Voxels that vanished are of the epoch before.
+  void count(const TileLevel& source, const LeavesOfTiles& tiles) {
+    constexpr auto kVanished = static_cast<std::int32_t>(ChangeMark::kVanished);
     for (const auto& [tile, leaves] : tiles) {
       for (const VoxelLeaf* leaf : leaves) {
-        tiles_.num_voxels += leaf->getValueMask().countOn();
-        for_each_voxel(*leaf, [&](const VoxelIndex&, std::size_t i) { tiles_.num_points += level.records()[i].count; });
+        for_each_voxel(*leaf, [&](const VoxelIndex&, std::size_t i) {
+          if (!source.changes.empty() && source.changes[i] == kVanished) return;
+          ++tiles_.num_voxels;
+          tiles_.num_points += source.level.records()[i].count;
+        });
       }
     }
   }
@@ -160,13 +177,36 @@ class TileWriter {
 };
 
 // Writes the tiles of a block on the levels below its own; returns the block's own level.
-VoxelLevel write_block(const SiteSource& source, const QuadTile& block, const SiteGrid& grid, TileWriter& writer) {
-  VoxelLevel level = load_block(source, block, grid);
+MarkedLevel write_block(MarkedLevel level, const QuadTile& block, const SiteGrid& grid, TileWriter& writer) {
   for (std::int32_t number = 0; number < block.level; ++number) {
     writer.write_level(level, number, columns_of(block, number, grid));
-    level = parents_of(level);
+    level = level.coarsened();
   }
-  return cut_leaves(level, columns_of(block, block.level, grid));
+  const openvdb::CoordBBox own = columns_of(block, block.level, grid);
+  level.voxels = cut_leaves(level.voxels, own);
+  if (level.marks) level.marks = cut_leaves(*level.marks, own);
+  return level;
+}
+
+// Levels of different blocks as one.
+VoxelLevel joined(std::vector<VoxelLevel> levels) {
+  std::vector<VoxelMap> maps;
+  for (VoxelLevel& level : levels) {
+    maps.emplace_back();
+    maps.back().levels.push_back(std::move(level));
+  }
+  return std::move(splice(maps).levels.front());
+}
+
+MarkedLevel joined(std::vector<MarkedLevel> blocks) {
+  std::vector<VoxelLevel> voxels, marks;
+  for (MarkedLevel& block : blocks) {
+    voxels.push_back(std::move(block.voxels));
+    if (block.marks) marks.push_back(std::move(*block.marks));
+  }
+  MarkedLevel whole{joined(std::move(voxels)), std::nullopt};
+  if (!marks.empty()) whole.marks = joined(std::move(marks));
+  return whole;
 }
 
 // Whether tiles will not become fewer by going up: there is one, or those left are the four around the origin.
@@ -181,23 +221,22 @@ bool is_top(const std::vector<QuadTile>& tiles) {
 
 std::size_t num_blocks(const SiteSource& source) { return blocks_of(source, site_grid(source.voxel_size())).size(); }
 
-SiteTiles write_tiles(const SiteSource& source, SiteFolder& folder, const std::function<void()>& on_block_done) {
+SiteTiles write_tiles(const SiteSource& source, const SiteChanges& changes, SiteFolder& folder,
+                      const std::function<void()>& on_block_done) {
   const SiteGrid grid = site_grid(source.voxel_size());
   TileWriter writer(source, grid, folder);
-  std::vector<VoxelMap> tops;
+  std::vector<MarkedLevel> tops;
   for (const QuadTile& block : blocks_of(source, grid)) {
-    tops.push_back({source.layout().frame, {}, source.layout().has_color, source.layout().label_scheme});
-    tops.back().levels.push_back(write_block(source, block, grid, writer));
+    tops.push_back(write_block(load_block(source, changes, block, grid), block, grid, writer));
     on_block_done();
   }
 
-  VoxelMap top = splice(tops);
-  tops.clear();
+  MarkedLevel top = joined(std::move(tops));
   std::int32_t number = grid.block_level;
   for (;; ++number) {
-    writer.write_level(top.finest(), number, openvdb::CoordBBox::inf());
+    writer.write_level(top, number, openvdb::CoordBBox::inf());
     if (is_top(writer.tiles_of_level(number))) break;
-    top.levels.front() = parents_of(top.finest());
+    top = top.coarsened();
   }
   return writer.finish(number + 1);
 }

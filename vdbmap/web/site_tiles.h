@@ -22,6 +22,12 @@ struct SiteTiles {
   std::int32_t num_levels = 0;
 };
 
+/// What became of the voxels of an epoch since the one before.
+struct SiteChanges {
+  const VoxelLevel* marks = nullptr;   ///< of a diff, see ChangeMarks; nullptr: nothing is known
+  const SiteSource* before = nullptr;  ///< what vanished looks as it did there
+};
+
 /// Number of blocks that a source is worked through in: squares of 256 m, mostly.
 std::size_t num_blocks(const SiteSource& source);
 
@@ -32,6 +38,7 @@ std::size_t num_blocks(const SiteSource& source);
 /// whole. Memory is that of one block, and the voxels of the block level: some 1/200 of the finest. The same files for
 /// any number of threads.
 SiteTiles write_tiles(
-    const SiteSource& source, SiteFolder& folder, const std::function<void()>& on_block_done = [] {});
+    const SiteSource& source, const SiteChanges& changes, SiteFolder& folder,
+    const std::function<void()>& on_block_done = [] {});
 
 }  // namespace vdbmap

@@ -8,13 +8,11 @@
 #include <vector>
 
 #include "vdbmap/core/voxel_level.h"
+#include "vdbmap/io/vdb/change_marks.h"
 #include "vdbmap/web/air_faces.h"
 #include "vdbmap/web/label_code.h"
 
 namespace vdbmap {
-
-/// What became of a voxel between two epochs, as tiles say it.
-enum class ChangeCode : std::uint8_t { kNone = 0, kAppeared = 1, kVanished = 2, kChanged = 3, kUnobserved = 4 };
 
 /// A voxel as a point of a tile, in the bytes of the file: 12, in three attributes of four.
 struct TilePoint {
@@ -23,7 +21,7 @@ struct TilePoint {
   std::array<std::uint8_t, 3> color{};  ///< linear, 255 is 1
   std::uint8_t unused_too = 0;
   LabelCode label = 0;
-  ChangeCode change = ChangeCode::kNone;
+  ChangeMark change = ChangeMark::kNone;
   AirFaces faces = 0;
   std::uint8_t age = 0;  ///< epochs since the voxel was last seen, 255 or more: 255
 
@@ -42,7 +40,7 @@ struct TileBlock {
 struct TileLevel {
   const VoxelLevel& level;
   std::span<const AirFaces> faces;        ///< a record
-  std::span<const std::int32_t> changes;  ///< a record, ChangeCode; empty: none known
+  std::span<const std::int32_t> changes;  ///< a record, ChangeMark; empty: none known
   LabelScheme label_scheme = LabelScheme::kUnknown;
   std::int32_t newest_epoch = 0;  ///< to which ages count
 };

@@ -25,6 +25,7 @@
 #include "vdbmap/core/map_tiles.h"
 #include "vdbmap/io/geodesy/geodetic_transform.h"
 #include "vdbmap/io/vdb/map_file.h"
+#include "vdbmap/io/vdb/vdb_file.h"
 #include "vdbmap/store/city_of_map.h"
 #include "vdbmap/web/label_code.h"
 
@@ -416,6 +417,39 @@ TEST_F(SiteTest, FarFromTheOriginLevelsGoOnUntilOneTileIsLeft) {
   for (const test::TilesetTile& tile : test::tiles_of_tileset(site / "tileset_1.json"))
     num_roots += tile.parent ? 0 : 1;
   EXPECT_EQ(num_roots, 1U);
+}
+
+TEST_F(SiteTest, ADiffMarksTheLastEpochAndShowsWhatVanished) {
+  const VoxelMap before = test::map_of_voxels({{0, 0, 0}, {1, 0, 0}, {2, 0, 0}});
+  const VoxelMap after = test::map_of_voxels({{0, 0, 0}, {1, 0, 0}, {900, 0, 0}});
+  SiteOptions options;
+  options.diff = saved("diff.vdb", before);
+  const std::vector<SiteEpoch> epochs = {{saved("a.vdb", before), ""}, {saved("b.vdb", after), ""}};
+  EXPECT_EQ(test::io_error_of([&] { write_site(folder_ / "site", epochs, options); }),
+            "diff.vdb: is no diff: it has no grid 'changed'");
+  const VdbContent content = read_vdb(folder_ / "diff.vdb");
+  openvdb::GridCPtrVec grids(content.grids.begin(), content.grids.end());
+  for (const std::string name : {"appeared", "vanished", "changed", "unobserved"}) {
+    auto grid = openvdb::FloatGrid::create();
+    grid->setName(name);
+    if (name == "appeared") grid->tree().setValue({900, 0, 0}, 1);
+    if (name == "vanished") grid->tree().setValue({2, 0, 0}, 1);
+    grids.push_back(grid);
+  }
+  write_vdb(folder_ / "diff.vdb", grids, *content.metadata);
+  const SiteWritten written = write_site(folder_ / "site", epochs, options);
+  EXPECT_EQ(written.num_voxels, 6U) << "what vanished is no voxel of the later epoch";
+  std::map<VoxelIndex, int> changes;
+  const Points later = points_of_levels(folder_ / "site" / "tileset_2.json")[kEdge];
+  for (const auto& [voxel, point] : later) {
+    changes[voxel] = point.attributes[1];
+  }
+  EXPECT_EQ(changes, (std::map<VoxelIndex, int>{{{0, 0, 0}, 0}, {{1, 0, 0}, 0}, {{2, 0, 0}, 2}, {{900, 0, 0}, 1}}));
+  const Points earlier = points_of_levels(folder_ / "site" / "tileset_1.json")[kEdge];
+  for (const auto& [voxel, point] : earlier) {
+    EXPECT_EQ(point.attributes[1], 0);
+  }
+  EXPECT_EQ(nlohmann::json::parse(test::read_raw(folder_ / "site" / "site.json"))["attributes"]["change"], true);
 }
 
 TEST_F(SiteTest, SpacesMayHaveMoreEpochsThanMaps) {
