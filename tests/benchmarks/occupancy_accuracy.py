@@ -134,7 +134,7 @@ def main(program, folder, seeds):
                 count.add(truth[place], space["state"])
         for name, count in counts.items():
             print(f"{count.line(f'{seed} {name}')}", flush=True)
-        print(f"{seed} own: {num_placed} of {sum(1 for i in middles)} spaces and candidates lie in a true space", flush=True)
+        print(f"{seed} own: {num_placed} of {sum(1 for i in middles)} found, candidates included, are true ones", flush=True)
     for name, count in totals.items():
         print(count.line("all " + name))
     for low, high in ((0, 0.8), (0.8, 0.95), (0.95, 1.01)):

@@ -97,10 +97,9 @@ class OccupancyCommands : public MapCommand {
 
   // States by the ids of the spaces.
   std::map<std::string, std::string> states() const {
+    const auto document = nlohmann::json::parse(test::read_raw(path("occupancy.json")));
     std::map<std::string, std::string> states;
-    for (const auto& space : nlohmann::json::parse(test::read_raw(path("occupancy.json")))["spaces"]) {
-      states[space["id"]] = space["state"];
-    }
+    for (const auto& space : document["spaces"]) states[space["id"]] = space["state"];
     return states;
   }
 };
