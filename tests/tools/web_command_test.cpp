@@ -40,12 +40,12 @@ TEST_F(WebCommand, GivesEpochsTheirNames) {
   ASSERT_EQ(
       vdbmap({"build", ply("later.ply", moved(scan(2), kUtm)), "--into", path("city/"), "--epoch", "2"}).exit_code, 0);
   json_of({"web", path("city/"), "-o", path("site"), "--epoch-names", "2023-03,2023-09-05", "--name", "The street"});
-  const nlohmann::json json = site("site");
-  EXPECT_EQ(json["name"], "The street");
-  ASSERT_EQ(json["epochs"].size(), 2U);
-  EXPECT_EQ(json["epochs"][0]["date"], "2023-03-01");
-  EXPECT_EQ(json["epochs"][1]["date"], "2023-09-05");
-  EXPECT_LT(json["epochs"][0]["points"].get<int>(), json["epochs"][1]["points"].get<int>());
+  const nlohmann::json written = site("site");
+  EXPECT_EQ(written["name"], "The street");
+  ASSERT_EQ(written["epochs"].size(), 2U);
+  EXPECT_EQ(written["epochs"][0]["date"], "2023-03-01");
+  EXPECT_EQ(written["epochs"][1]["date"], "2023-09-05");
+  EXPECT_LT(written["epochs"][0]["points"].get<int>(), written["epochs"][1]["points"].get<int>());
   json_of({"web", path("city@2"), "-o", path("one")});
   EXPECT_EQ(site("one")["epochs"].size(), 1U);
   EXPECT_EQ(site("one")["epochs"][0]["name"], "epoch 2");

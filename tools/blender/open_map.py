@@ -133,7 +133,7 @@ def faces_of_block(voxels, low, without):
     """Corners of the sides towards air of the voxels of a block [m], and their colours: four rows a side."""
     around = voxels.occupied(tuple(i - 1 for i in low), BLOCK + 2)
     inside = around[1:-1, 1:-1, 1:-1]
-    if without is not None:
+    if without is not None and math.isclose(without.size, voxels.size):
         inside = inside & ~without.occupied(low, BLOCK)
     if not inside.any():
         return None

@@ -26,7 +26,7 @@ const char* name_of(Change change);
 
 /// When two maps differ.
 struct DiffOptions {
-  double pose_sigma = 0.01;     ///< [m] standard deviation of one map's place against the other's, along any direction
+  double pose_sigma = 0.018;    ///< [m] standard deviation of one map's place against the other's, along any direction
   double range_sigma = 0.01;    ///< [m] of what ranges of a whole surface have in common: calibration, material, angle
   double significance = 0.001;  ///< how often a test may fail by chance where nothing changed, 0 to 0.5
   bool takes_unseen_as_empty = false;  ///< for maps without rays: what a map does not hold, it saw empty

@@ -13,26 +13,34 @@ namespace vdbmap {
 namespace {
 
 constexpr double kLeastPlanarity = 0.35;
+constexpr double kMostThickness = 0.2;         // of a plane: variance across it, as a share of the smaller one along it
 constexpr double kFewestPoints = 8;            // of a plane
 constexpr double kParallel = 0.94;             // cosine of 20 degrees
 constexpr double kSlope = 0.03;                // tangent of what two parallel normals may be off, 1.7 degrees
 constexpr double kFewPoints = 8;               // of which a covariance says little
 constexpr double kUniformVariance = 1.0 / 12;  // of a voxel filled evenly, in squares of its edge
 
-double two_sided_quantile(double share) {
-  double low = 0, high = 40;
-  for (int i = 0; i < 80; ++i) {
+// Where a survival function that falls from 1 reaches a share.
+template <typename Survival>
+double quantile_of(const Survival& survival, double share) {
+  double low = 0, high = 2000;
+  for (int i = 0; i < 100; ++i) {
     const double middle = (low + high) / 2;
-    (std::erfc(middle / std::numbers::sqrt2) > share ? low : high) = middle;
+    (survival(middle) > share ? low : high) = middle;
   }
   return low;
 }
 
-// Wilson & Hilferty 1931, to 1 % for 3 degrees of freedom.
+double two_sided_quantile(double share) {
+  return quantile_of([](double x) { return std::erfc(x / std::numbers::sqrt2); }, share);
+}
+
+// Of chi squared with 3 degrees of freedom.
 double chi_squared_quantile(double share) {
-  const double z = two_sided_quantile(std::min(1.0, 2 * share));
-  constexpr double kVariance = 2.0 / (9 * 3);
-  return 3 * std::pow(1 - kVariance + z * std::sqrt(kVariance), 3);
+  const auto survival = [](double x) {
+    return std::erfc(std::sqrt(x / 2)) + std::sqrt(2 * x / std::numbers::pi) * std::exp(-x / 2);
+  };
+  return quantile_of(survival, share);
 }
 
 double along(const Eigen::Matrix3d& covariance, const Eigen::Vector3d& direction) {
@@ -73,7 +81,13 @@ Distance from_cloud(const LocalSurface& voxel, const LocalSurface& other, double
 
 }  // namespace
 
-bool LocalSurface::is_planar() const { return planarity >= kLeastPlanarity && count >= kFewestPoints; }
+bool LocalSurface::is_planar() const {
+  if (planarity < kLeastPlanarity || count < kFewestPoints) return false;
+  // Of the eigenvalues l1 >= l2 >= l3 the sum, l3 and (l2 - l3) / l1 are known. Two planes that meet have a planarity
+  // too.
+  const double largest = (covariance.trace() - 2 * thickness) / (1 + planarity);
+  return thickness <= kMostThickness * (planarity * largest + thickness);
+}
 
 LocalSurface surface_of(const PointSums& sums) {
   const Moments moments = moments_of(sums);

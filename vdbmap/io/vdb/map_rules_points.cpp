@@ -168,7 +168,10 @@ Finding check_known_point(const CheckedFile& file) {
     num_checked += num_points(*voxels);
   }
   const bool has_means = find_grid(file, "mean") != nullptr;
-  if (num_checked == 0 && !has_means) finding.problems.push_back("no points to compare with the voxels of 'density'");
+  const openvdb::GridBase::ConstPtr density = find_grid(file, "density");
+  const bool has_voxels = !density || density->activeVoxelCount() > 0;
+  if (num_checked == 0 && !has_means && has_voxels)
+    finding.problems.push_back("no points to compare with the voxels of 'density'");
   finding.remark = num_checked == 0 ? "means, no points" : std::to_string(num_checked) + " points";
   return finding;
 }

@@ -93,7 +93,7 @@ TEST(DiffFile, EqualDiffsAreEqualFiles) {
   const test::TemporaryFolder folder;
   save_diff(folder / "a.vdb", sample_diff());
   save_diff(folder / "b.vdb", sample_diff());
-  EXPECT_EQ(test::read_raw(folder / "a.vdb"), test::read_bytes(folder / "b.vdb"));
+  EXPECT_EQ(test::read_raw(folder / "a.vdb"), test::read_raw(folder / "b.vdb"));
 }
 
 TEST(DiffFile, RefusesAMap) {
