@@ -9,5 +9,6 @@ export default defineConfig({
     emptyOutDir: true,
     chunkSizeWarningLimit: 1500, // [kB] three.js is most of it
     modulePreload: false,
+    license: { fileName: 'assets/licenses.md' }, // of what is bundled
   },
 });
