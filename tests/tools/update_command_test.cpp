@@ -157,7 +157,8 @@ TEST_F(Update, WrongUseIsSaidInOneLine) {
   std::vector<std::string> epoch = arguments(before, "second", "after.vdb");
   epoch.insert(epoch.end(), {"--epoch", "0"});
   expect_error(vdbmap(epoch), ExitCode::kWrongUsage, "the map is of epoch 1");
-  expect_error(vdbmap(arguments(path("missing.vdb"), "second", "after.vdb")), ExitCode::kInputOutputFailed, "missing.vdb");
+  expect_error(vdbmap(arguments(path("missing.vdb"), "second", "after.vdb")), ExitCode::kInputOutputFailed,
+               "missing.vdb");
 }
 
 // A survey whose points have times, and its trajectory.

@@ -331,6 +331,7 @@ def prepare_renderer(scene, options):
     scene.render.resolution_x, scene.render.resolution_y = int(width), int(height)
     scene.render.resolution_percentage = 100
     scene.render.image_settings.file_format = "PNG"
+    scene.render.image_settings.color_mode = "RGB"
 
 
 def open_maps(options):

@@ -206,8 +206,9 @@ FoundVoxels compare(const Subject& subject, const openvdb::CoordBBox& box, const
 // Sorted, and of several voxels of one place the first.
 void sort_by_key(std::vector<FoundVoxel>& voxels) {
   std::ranges::stable_sort(voxels, {}, &FoundVoxel::key);
-  const auto [first, last] = std::ranges::unique(voxels, {}, &FoundVoxel::key);
-  voxels.erase(first, last);
+  const auto first = std::unique(voxels.begin(), voxels.end(),
+                                 [](const FoundVoxel& a, const FoundVoxel& b) { return a.key == b.key; });
+  voxels.erase(first, voxels.end());
 }
 
 ChangedVoxels voxels_of(std::vector<FoundVoxel> found, double voxel_size, bool has_labels) {

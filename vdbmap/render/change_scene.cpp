@@ -74,8 +74,9 @@ ChangeScene scene_of_changes(const VoxelMap& later, const MapDiff& diff) {
   add_voxels(diff.vanished.level, Change::kVanished, parts);
   add_voxels(diff.changed.level, Change::kChanged, parts);
   std::ranges::stable_sort(parts, {}, &ScenePart::key);
-  const auto [first, last] = std::ranges::unique(parts, {}, &ScenePart::key);
-  parts.erase(first, last);
+  const auto first =
+      std::unique(parts.begin(), parts.end(), [](const ScenePart& a, const ScenePart& b) { return a.key == b.key; });
+  parts.erase(first, parts.end());
 
   VoxelAssembly assembly(later.finest().voxel_size(), parts.size());
   ChangeScene scene{{later.frame, {}, later.has_color, later.label_scheme}, {}};

@@ -250,7 +250,8 @@ TEST(Render, PathsOnEachOtherAreAllSeenTheFirstOnTop) {
   options.camera = {0, 0, 8};
   options.has_decoration = false;
   const Image image =
-      render(test::map_of_voxels({{0, 0, 0}}), options, {nullptr, {}, {{"a", poses}, {"b", poses}, {"c", poses}}, {}}).image;
+      render(test::map_of_voxels({{0, 0, 0}}), options, {nullptr, {}, {{"a", poses}, {"b", poses}, {"c", poses}}, {}})
+          .image;
   const Rgb8 red = rgb8(0xe3241f);
   EXPECT_EQ(image.at(800, 500), red);
   const std::size_t num_red = test::count_pixels(image, red);
