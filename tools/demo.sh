@@ -1,9 +1,9 @@
 #!/usr/bin/env bash
 # SPDX-License-Identifier: GPL-3.0-or-later
 # tools/demo.sh: simulates a street, maps its first survey, finds the scans of another day in it with no first guess,
-# compares them with the truth, tells which parking spaces are taken, and brings the map up to date. tools/demo.sh DATA_FOLDER: the same with real scans, from a folder with velodyne/ and
-# poses.txt: a map of every second scan, the others found in it. Everything is written to demo/; demo/summary.txt holds
-# what the commands said.
+# compares them with the truth, tells which parking spaces are taken, brings the map up to date, says what changed, and
+# makes a site of it all. tools/demo.sh DATA_FOLDER: with real scans, from a folder with velodyne/ and poses.txt: a map of
+# every second scan, the others found in it. Everything is written to demo/; demo/summary.txt holds what the commands said.
 set -euo pipefail
 if (($# > 1)); then
   echo "usage: tools/demo.sh [DATA_FOLDER]" >&2
@@ -64,13 +64,17 @@ look_for_parking() {
 demonstrate_on_simulated_street() {
   local street=demo/street
   vdbmap simulate "$street" --seed 1 --ideal
-  vdbmap build "$street/epoch0/cloud.las" -o demo/map.vdb
+  vdbmap build "$street/epoch0/cloud.las" --trajectory "$street/epoch0/mapper.tum" --lever-arm 0,0,2 --date 2023-03-01 \
+    -o demo/map.vdb
   look_into_map
   vdbmap localize demo/map.vdb "$street/epoch1/scans" -o demo/poses.txt --report demo/report.json
   vdbmap evaluate demo/poses.txt "$street/epoch1/poses.txt" --plot demo/evaluation.png
   draw_pictures "$street/epoch1/poses.txt"
   look_for_parking "$street/epoch1/scans"
   vdbmap update demo/map.vdb "$street/epoch1/scans" --poses demo/poses.txt --date 2023-03-02 -o demo/map2.vdb
+  vdbmap diff demo/map.vdb demo/map2.vdb -o demo/diff.vdb --geojson demo/changes.geojson --plot demo/changes.png
+  vdbmap web demo/labelled.vdb -o demo/site --spaces demo/spaces.geojson demo/occupancy.geojson --name "A simulated street"
+  echo "The street in the browser: build/release/bin/vdbmap web demo/site --serve --open"
 }
 
 demonstrate_on_real_scans() {
