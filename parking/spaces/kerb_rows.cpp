@@ -224,7 +224,9 @@ std::vector<KerbRow> find_kerb_rows(std::span<const ParkingSpace> spaces, const 
   std::map<std::size_t, KerbRow> rows;  // by their first spaces
   for (std::size_t i = 0; i < spaces.size(); ++i) rows[groups.of(i)].spaces.push_back(i);
   std::vector<KerbRow> result;
-  for (auto& [first, row] : rows) {
+  for (auto& entry : rows) {
+    const std::size_t first = entry.first;
+    KerbRow& row = entry.second;
     row.angle = angles[first];
     Eigen::Vector2d sum = Eigen::Vector2d::Zero();
     for (const std::size_t i : row.spaces) sum += (streets[i].dot(streets[first]) < 0 ? -1 : 1) * streets[i];
