@@ -161,6 +161,33 @@ TEST_F(Update, WrongUseIsSaidInOneLine) {
                "missing.vdb");
 }
 
+TEST_F(Update, CitiesAreRefusedByName) {
+  const std::string before = map_with_box();
+  drive("second", false);
+  EXPECT_EQ(vdbmap({"export", before, path("city/")}).exit_code, 0);
+  expect_error(vdbmap(arguments(path("city/"), "second", "after.vdb")), ExitCode::kWrongUsage, "is a city");
+  expect_error(vdbmap(arguments(before, "second", "city/")), ExitCode::kWrongUsage, "is a city");
+}
+
+TEST_F(Update, ChangesOfAnEpochThatGoesOnAddUp) {
+  const std::string before = map_with_box();
+  drive("second", false);
+  drive("third", true);
+  Trajectory poses = read_trajectory(poses_of("third"));  // a hair beside those of the first drive, or it were counted
+  for (auto& pose : poses.map_from_scan) pose->translation().y() += 0.001;
+  write_trajectory(poses_of("third"), poses, TrajectoryFormat::kKitti);
+  const auto in_epoch_5 = [&](const std::string& map, const std::string& name, const std::string& output) {
+    std::vector<std::string> command = arguments(map, name, output);
+    command.insert(command.end(), {"--epoch", "5"});
+    return json_of(command)["voxels"];
+  };
+  const json first = in_epoch_5(before, "second", "b.vdb");
+  const json second = in_epoch_5(path("b.vdb"), "third", "c.vdb");
+  const json log = json_of({"log", path("c.vdb")});
+  ASSERT_EQ(log.size(), 2U);
+  EXPECT_EQ(log[1]["changes"]["added"], first["added"].get<int>() + second["added"].get<int>());
+}
+
 // A survey whose points have times, and its trajectory.
 class SurveyRaysCommand : public MapCommand {
  protected:
@@ -195,6 +222,13 @@ TEST_F(SurveyRaysCommand, KeepWhatIsFree) {
   const CommandResult plain = vdbmap({"build", survey(true, 100), "-o", path("b.vdb")});
   EXPECT_EQ(plain.exit_code, 0);
   EXPECT_NE(vdbmap({"info", path("b.vdb")}).out.find("was never seen"), std::string::npos);
+}
+
+TEST_F(SurveyRaysCommand, ADateNeedsNone) {
+  EXPECT_EQ(vdbmap({"build", survey(false, 0), "--date", "2023-03-02", "-o", path("a.vdb")}).exit_code, 0);
+  EXPECT_EQ(json_of({"log", path("a.vdb")})[0]["date"], "2023-03-02");
+  expect_error(vdbmap({"build", survey(false, 0), "--date", "2023-03-02", "-o", path("city/")}), ExitCode::kWrongUsage,
+               "--date");
 }
 
 TEST_F(SurveyRaysCommand, NeedTimesOfTheTrajectory) {

@@ -17,7 +17,7 @@
 #include "tools/cli/build_report.h"
 #include "tools/cli/city_output.h"
 #include "tools/cli/command.h"
-#include "tools/cli/epoch_date.h"
+#include "tools/cli/date_option.h"
 #include "tools/cli/map_output.h"
 #include "tools/cli/number_list.h"
 #include "tools/cli/pose_frame.h"
@@ -45,7 +45,6 @@ struct RayOptions {
   std::optional<std::filesystem::path> trajectory;
   std::vector<double> lever_arm;
   bool of_scans = false;  // whose poses are given
-  std::string date;
 
   bool are_wanted() const { return trajectory || of_scans; }
 };
@@ -60,6 +59,7 @@ struct BuildCommandOptions {
   std::vector<double> anchor;
   std::optional<int> epsg;
   std::optional<std::int32_t> epoch;
+  std::string date;
   std::optional<std::filesystem::path> labels;
   std::string label_scheme;
   std::optional<double> min_range;  // [m]
@@ -91,6 +91,7 @@ void add_map_options(CLI::App& app, BuildCommandOptions& options) {
   app.add_option("--epoch", options.epoch, "Number of the survey, stored as first and last epoch of every voxel")
       ->check(CLI::Range(0, std::numeric_limits<std::int32_t>::max()).description(""))
       ->type_name("N");
+  add_date(app, options.date, "the survey, which vdbmap log then tells");
 }
 
 void add_label_options(CLI::App& app, BuildCommandOptions& options) {
@@ -131,7 +132,6 @@ void add_ray_options(CLI::App& app, BuildCommandOptions& options, CLI::Option* p
   app.add_flag("--visibility", options.rays.of_scans,
                "With --poses: deskew scans with times, and keep from their rays what is free")
       ->needs(poses);
-  add_epoch_date(app, options.rays.date);
 }
 
 void add_options(CLI::App& app, BuildCommandOptions& options) {
@@ -265,7 +265,7 @@ MapExtras extras_of_survey(const VoxelMap& map, const ChosenInputs& chosen, cons
 MapHistory history_of(const ChosenInputs& chosen, const BuildCommandOptions& options) {
   MapHistory history;
   const std::int32_t epoch = options.epoch.value_or(0);
-  history.epochs.push_back({epoch, options.rays.date, {}});
+  history.epochs.push_back({epoch, options.date, {}});
   history.sources = identify_sources(chosen.inputs);
   for (MapSource& source : history.sources) source.epoch = epoch;
   return history;
@@ -307,10 +307,8 @@ void run_for_file(const ChosenInputs& chosen, const MapFromFilesOptions& files, 
   warn_without_labels(options.label_scheme, !built.map.finest().channels().labels.empty());
   const ReadingReport reading = complete(listed, built.notes, chosen, options);
   MapExtras extras;
-  if (options.rays.trajectory) {
-    extras = extras_of_survey(built.map, chosen, files.inputs, options.rays, common);
-    extras.history = history_of(chosen, options);
-  }
+  if (options.rays.trajectory) extras = extras_of_survey(built.map, chosen, files.inputs, options.rays, common);
+  if (options.rays.trajectory || !options.date.empty()) extras.history = history_of(chosen, options);
   save_map(options.output.file, built.map, extras, options.output.save);
   print_built(built, options.output.file, {built.notes, chosen, reading, seconds_since(start)}, common.json);
 }
@@ -355,7 +353,6 @@ BuildOptions checked_build_options(const BuildCommandOptions& options) {
 ExitCode run(const BuildCommandOptions& options, const CommonOptions& common) {
   const BuildOptions build_options = checked_build_options(options);
   range_of(options);
-  check_epoch_date(options.rays.date);
   ReadingReport listed;
   const std::vector<std::filesystem::path> files = list_inputs(options.inputs, listed);
   std::vector<std::filesystem::path> read_files = files;
@@ -369,8 +366,9 @@ ExitCode run(const BuildCommandOptions& options, const CommonOptions& common) {
   check_outputs(options, label_files(chosen.inputs));
   const MapFromFilesOptions input_options = files_options(build_options, options, common);
   if (options.makes_city()) {
-    if (options.rays.are_wanted())
-      throw std::invalid_argument("--trajectory and --visibility are for maps in one file");
+    if (options.rays.are_wanted() || !options.date.empty()) {
+      throw std::invalid_argument("--trajectory, --visibility and --date are for maps in one file");
+    }
     run_for_city(chosen, input_options, listed, options, common);
   } else if (options.rays.of_scans) {
     if (options.labels) throw std::invalid_argument("--labels and --visibility cannot be given together");

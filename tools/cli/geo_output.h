@@ -1,8 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #pragma once
 
-#include <string>
-
 #include <CLI/App.hpp>
 
 #include "parking/exchange/spaces_file.h"
@@ -11,8 +9,5 @@ namespace vdbmap::cli {
 
 /// Declares --map-coordinates and --geoid-offset.
 void add_geo_options(CLI::App& app, parking::GeoOptions& options);
-
-/// Declares --date: `what` it is the date of. Refuses what is no date of ISO 8601.
-void add_date(CLI::App& app, std::string& date, const std::string& what);
 
 }  // namespace vdbmap::cli

@@ -9,6 +9,7 @@
 
 #include <nlohmann/json.hpp>
 #include <spdlog/fmt/fmt.h>
+#include <spdlog/spdlog.h>
 
 #include "tools/cli/city_output.h"
 #include "tools/cli/city_summary.h"
@@ -20,6 +21,7 @@
 #include "vdbmap/core/error.h"
 #include "vdbmap/core/map_merge.h"
 #include "vdbmap/io/vdb/map_file.h"
+#include "vdbmap/io/vdb/visibility_file.h"
 #include "vdbmap/store/city_of_map.h"
 #include "vdbmap/store/city_window.h"
 
@@ -90,6 +92,15 @@ std::vector<MapSource> sources_of(const std::vector<std::filesystem::path>& maps
   return sources;
 }
 
+// What rays passed in one map, points of another may fill.
+void warn_of_rays(const std::vector<std::filesystem::path>& maps) {
+  for (const std::filesystem::path& map : maps) {
+    if (!is_city(map) && has_visibility(map)) {
+      spdlog::warn("{}: what its rays said is not in the merged map, use update to add to it", map.string());
+    }
+  }
+}
+
 void print_city(const CityManifest& manifest, const MergeOptions& options, const CommonOptions& common) {
   if (common.json) {
     print_json(json_of_city(manifest, options.output.file));
@@ -105,6 +116,7 @@ ExitCode run(const MergeOptions& options, const CommonOptions& common) {
   if (!makes_city) check_output(options.output.file, kMapKind, options.maps);
   const std::vector<MapSource> sources = sources_of(options.maps);
   const VoxelMap merged = merge_files(options.maps, common);
+  warn_of_rays(options.maps);
   if (makes_city) {
     print_city(save_city(city_folder(options.output.file), merged, options.output.save, sources), options, common);
     return ExitCode::kDone;

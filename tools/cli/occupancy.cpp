@@ -23,6 +23,7 @@
 #include "parking/spaces/iso_date.h"
 #include "tools/cli/build_inputs.h"
 #include "tools/cli/command.h"
+#include "tools/cli/date_option.h"
 #include "tools/cli/geo_output.h"
 #include "tools/cli/labelled_map.h"
 #include "tools/cli/map_output.h"

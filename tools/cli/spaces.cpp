@@ -16,6 +16,7 @@
 #include "parking/exchange/spaces_file.h"
 #include "parking/spaces/find_spaces.h"
 #include "tools/cli/command.h"
+#include "tools/cli/date_option.h"
 #include "tools/cli/geo_output.h"
 #include "tools/cli/labelled_map.h"
 #include "tools/cli/map_output.h"

@@ -16,8 +16,9 @@
 #include <spdlog/spdlog.h>
 
 #include "tools/cli/build_inputs.h"
+#include "tools/cli/city_output.h"
 #include "tools/cli/command.h"
-#include "tools/cli/epoch_date.h"
+#include "tools/cli/date_option.h"
 #include "tools/cli/map_output.h"
 #include "tools/cli/output.h"
 #include "tools/cli/pose_certainty.h"
@@ -69,7 +70,7 @@ void add_options(CLI::App& app, UpdateCommandOptions& options) {
   app.add_option("--epoch", options.epoch, "Number of the drive (default: one more than the map's latest)")
       ->check(CLI::Range(0, std::numeric_limits<std::int32_t>::max()).description(""))
       ->type_name("N");
-  add_epoch_date(app, options.date);
+  add_date(app, options.date, "the drive");
   app.add_option("--min-range", options.min_range,
                  "Leave out points nearer to the sensor [m], its carrier's for example")
       ->check(CLI::Range(0.0, 1000.0).description(""))
@@ -109,9 +110,13 @@ std::int32_t chosen_epoch(const UpdateCommandOptions& options, const VoxelMap& m
   throw std::invalid_argument(fmt::format("--epoch is {}, but the map is of epoch {}", *options.epoch, last));
 }
 
+// Of an epoch that goes on, changes add up.
 void add_epoch(MapHistory& history, const MapEpoch& epoch) {
-  if (!history.epochs.empty() && history.epochs.back().number == epoch.number) history.epochs.pop_back();
-  history.epochs.push_back(epoch);
+  const bool goes_on = !history.epochs.empty() && history.epochs.back().number == epoch.number;
+  if (!goes_on) return history.epochs.push_back(epoch);
+  MapEpoch& last = history.epochs.back();
+  if (!epoch.date.empty()) last.date = epoch.date;
+  last.changes = last.changes + epoch.changes;
 }
 
 MapChanges changes_of(const UpdateCounts& counts) {
@@ -175,12 +180,21 @@ void drop_uncertain(std::vector<MapInput>& inputs, const UpdateCommandOptions& o
   });
 }
 
+// Tiles keep no rays yet.
+void refuse_cities(const UpdateCommandOptions& options) {
+  for (const std::filesystem::path& path : {options.map, options.output.file}) {
+    if (is_city_output(path)) {
+      throw std::invalid_argument(path.string() + ": is a city, update takes and makes maps in one file");
+    }
+  }
+}
+
 ExitCode run(const UpdateCommandOptions& options, const CommonOptions& common) {
+  refuse_cities(options);
   if (!(options.min_range < options.max_range)) {
     throw std::invalid_argument(
         fmt::format("--min-range is {} but --max-range {}", options.min_range, options.max_range));
   }
-  check_epoch_date(options.date);
   ReadingReport listed;
   const std::vector<std::filesystem::path> files = list_inputs(options.scans, listed);
   std::vector<std::filesystem::path> read_files = files;

@@ -84,16 +84,16 @@ class RayEvidence::Walker {
     CellWalk<SeenBlock::kLog2Dim, VoxelLeaf::LOG2DIM> cells(path, block.origin(), arrival.distance);
     do {
       SeenLeaf& leaf = block.leaf(cells.offset());
-      if (leaf.has_occupied()) {
-        walk_occupied(leaf, block.origin_of_leaf(cells.offset()), path, arrival, stop);
-      } else if (!leaf.is_full.load(std::memory_order_relaxed)) {
-        walk_empty(leaf, block.origin_of_leaf(cells.offset()), path, arrival, stop);
-      }
+      const bool is_full = leaf.is_full.load(std::memory_order_relaxed);
+      if (is_full && !leaf.has_occupied()) continue;
+      const VoxelIndex origin = block.origin_of_leaf(cells.offset());
+      if (!is_full) mark_seen(leaf, origin, path, arrival, stop);
+      if (leaf.has_occupied()) meet_occupied(leaf, origin, path, {arrival.distance, std::min(stop, cells.exit())});
     } while (cells.advance(arrival, stop));
   }
 
-  static void walk_empty(SeenLeaf& leaf, const VoxelIndex& origin, const RayPath& path, RayArrival arrival,
-                         double stop) {
+  static void mark_seen(SeenLeaf& leaf, const VoxelIndex& origin, const RayPath& path, RayArrival arrival,
+                        double stop) {
     CellWalk<VoxelLeaf::LOG2DIM, 0> cells(path, origin, arrival.distance);
     do {
       leaf.mark(cells.offset());
@@ -101,23 +101,28 @@ class RayEvidence::Walker {
     if (leaf.has_all_marked()) leaf.is_full.store(true, std::memory_order_relaxed);
   }
 
-  void walk_occupied(SeenLeaf& leaf, const VoxelIndex& origin, const RayPath& path, RayArrival arrival, double stop) {
+  // Apart from marking, so that what is met does not depend on what other threads have marked before. Of a leaf of
+  // road, most rays pass over what is occupied.
+  void meet_occupied(const SeenLeaf& leaf, const VoxelIndex& origin, const RayPath& path, const RayRange& in_leaf) {
+    const std::optional<RayRange> range = clip(path, leaf.occupied_box, in_leaf);
+    if (!range) return;
+    RayArrival arrival{range->begin};
     CellWalk<VoxelLeaf::LOG2DIM, 0> cells(path, origin, arrival.distance);
     do {
-      const openvdb::Index offset = cells.offset();
-      leaf.mark(offset);
-      for (std::size_t side = 0; side < SeenLeaf::kMostOccupied; ++side) {
-        const VoxelLeaf* level = leaf.occupied[side];
-        if (!level || !level->getValueMask().isOn(offset)) continue;
-        const std::size_t record = level->transientData() + rank_in_leaf(*level, offset);
-        Side& met = evidence_.sides_[side];
-        if (!goes_through(met.surfaces[record], level->offsetToGlobalCoord(offset), arrival.distance, cells.exit())) {
-          continue;
-        }
-        std::atomic_ref(met.passes[record]).fetch_add(1, std::memory_order_relaxed);
-        add_shared(met.pass_times[record], time_);
-      }
-    } while (cells.advance(arrival, stop));
+      if (leaf.is_occupied(cells.offset())) meet_voxel(leaf, cells.offset(), arrival.distance, cells.exit());
+    } while (cells.advance(arrival, range->end));
+  }
+
+  void meet_voxel(const SeenLeaf& leaf, openvdb::Index offset, double enter, double exit) {
+    for (std::size_t side = 0; side < SeenLeaf::kMostLevels; ++side) {
+      const VoxelLeaf* level = leaf.levels[side];
+      if (!level || !level->getValueMask().isOn(offset)) continue;
+      const std::size_t record = level->transientData() + rank_in_leaf(*level, offset);
+      Side& met = evidence_.sides_[side];
+      if (!goes_through(met.surfaces[record], level->offsetToGlobalCoord(offset), enter, exit)) continue;
+      std::atomic_ref(met.passes[record]).fetch_add(1, std::memory_order_relaxed);
+      add_shared(met.pass_times[record], time_);
+    }
   }
 
   // Whether the ray goes through the disc between `enter` and `exit`, and ends behind it.
@@ -152,7 +157,7 @@ class RayEvidence::Walker {
 
 RayEvidence::RayEvidence(std::vector<const VoxelMap*> maps, const RayTrust& trust) : trust_(trust) {
   trust.check();
-  if (maps.empty() || maps.size() > SeenLeaf::kMostOccupied) {
+  if (maps.empty() || maps.size() > SeenLeaf::kMostLevels) {
     throw std::invalid_argument("rays are followed through one or two maps, not " + std::to_string(maps.size()));
   }
   voxel_size_ = maps.front()->finest().voxel_size();

@@ -10,19 +10,11 @@
 namespace vdbmap {
 namespace {
 
-std::uint64_t occupied_in_layer(const SeenLeaf& leaf, std::size_t x) {
-  std::uint64_t bits = 0;
-  for (const VoxelLeaf* level : leaf.occupied) {
-    if (level) bits |= level->getValueMask().getWord<openvdb::Index64>(static_cast<openvdb::Index>(x));
-  }
-  return bits;
-}
-
 // The leaf of what was seen and is not occupied.
 VoxelLeaf empty_leaf(const SeenLeaf& leaf, const VoxelIndex& origin) {
   VoxelLeaf::NodeMaskType mask;
   for (std::size_t x = 0; x < SeenLeaf::kNumWords; ++x) {
-    mask.getWord<openvdb::Index64>(static_cast<openvdb::Index>(x)) = leaf.seen[x].load() & ~occupied_in_layer(leaf, x);
+    mask.getWord<openvdb::Index64>(static_cast<openvdb::Index>(x)) = leaf.seen[x].load() & ~leaf.occupied[x];
   }
   VoxelLeaf made(origin, false, false);
   made.setValueMask(mask);
@@ -31,9 +23,21 @@ VoxelLeaf empty_leaf(const SeenLeaf& leaf, const VoxelIndex& origin) {
 
 }  // namespace
 
+void SeenLeaf::add_level(const VoxelLeaf& leaf, std::size_t level) {
+  levels.at(level) = &leaf;
+  for (std::size_t x = 0; x < kNumWords; ++x) {
+    occupied[x] |= leaf.getValueMask().getWord<openvdb::Index64>(static_cast<openvdb::Index>(x));
+  }
+  for (auto voxel = leaf.getValueMask().beginOn(); voxel; ++voxel) {
+    occupied_box.expand(leaf.offsetToGlobalCoord(voxel.pos()));
+  }
+}
+
 bool SeenLeaf::has_all_marked() const {
-  return std::ranges::all_of(
-      seen, [](const auto& word) { return word.load(std::memory_order_relaxed) == ~std::uint64_t{0}; });
+  for (std::size_t x = 0; x < kNumWords; ++x) {
+    if ((seen[x].load(std::memory_order_relaxed) | occupied[x]) != ~std::uint64_t{0}) return false;
+  }
+  return true;
 }
 
 SeenBlock::~SeenBlock() {
@@ -58,7 +62,7 @@ SeenBlock& SeenSpace::block(const VoxelIndex& voxel) {
 
 void SeenSpace::add_occupied(const VoxelTree& tree, std::size_t level) {
   for (const VoxelLeaf& leaf : tree.leaves()) {
-    block(leaf.origin()).leaf(SeenBlock::cell_of_voxel(leaf.origin())).occupied.at(level) = &leaf;
+    block(leaf.origin()).leaf(SeenBlock::cell_of_voxel(leaf.origin())).add_level(leaf, level);
   }
 }
 

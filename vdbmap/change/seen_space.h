@@ -13,16 +13,23 @@
 namespace vdbmap {
 
 /// 8^3 voxels that rays may pass, and what is known of them so far.
-struct SeenLeaf {
+struct alignas(64) SeenLeaf {
   static constexpr std::size_t kNumWords = 8;  ///< layers of x: bit 8 y + z of a layer
-  static constexpr std::size_t kMostOccupied = 2;
+  static constexpr std::size_t kMostLevels = 2;
+
+  // What every ray asks first lies in one line of a cache.
+  openvdb::CoordBBox occupied_box;                     ///< around the occupied voxels
+  std::atomic<bool> is_full{false};                    ///< all voxels are seen or occupied: nothing more to mark
+  std::array<const VoxelLeaf*, kMostLevels> levels{};  ///< with voxels here
 
   std::array<std::atomic<std::uint64_t>, kNumWords> seen{};  ///< voxels that rays passed
-  /// Leaves of levels with voxels here: rays are looked at one by one.
-  std::array<const VoxelLeaf*, kMostOccupied> occupied{};
-  std::atomic<bool> is_full{false};  ///< all voxels are seen: nothing more to mark
+  std::array<std::uint64_t, kNumWords> occupied{};           ///< voxels of any level
 
-  bool has_occupied() const { return occupied[0] || occupied[1]; }
+  bool has_occupied() const { return !occupied_box.empty(); }
+
+  bool is_occupied(openvdb::Index offset) const { return (occupied[offset >> 6] >> (offset & 63) & 1) != 0; }
+
+  void add_level(const VoxelLeaf& leaf, std::size_t level);
 
   void mark(openvdb::Index offset) {
     const std::uint64_t bit = std::uint64_t{1} << (offset & 63);
@@ -76,13 +83,13 @@ class SeenBlock {
 };
 
 /// Space that rays pass, marked by any number of threads at once: what is marked does not depend on their number or
-/// order. Blocks of 128 voxels a side are made where rays come, 32 kB each and 144 B a leaf.
+/// order. Blocks of 128 voxels a side are made where rays come, 32 kB each and 192 B a leaf.
 class SeenSpace {
  public:
   /// The block that holds the voxel.
   SeenBlock& block(const VoxelIndex& voxel);
 
-  /// Tells the leaves of a level apart from empty space; before the first ray. Of at most SeenLeaf::kMostOccupied.
+  /// Tells the leaves of a level apart from empty space; before the first ray. Of at most SeenLeaf::kMostLevels.
   void add_occupied(const VoxelTree& tree, std::size_t level);
 
   /// The voxels that were marked and that no level occupies, in tree order.

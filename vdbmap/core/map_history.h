@@ -30,6 +30,11 @@ struct MapChanges {
   bool operator==(const MapChanges&) const = default;
 };
 
+inline MapChanges operator+(const MapChanges& a, const MapChanges& b) {
+  return {a.added + b.added, a.confirmed + b.confirmed, a.replaced + b.replaced,
+          a.gone + b.gone,   a.unseen + b.unseen,       a.moved + b.moved};
+}
+
 /// A survey or drive that went into a map.
 struct MapEpoch {
   std::int32_t number = 0;

@@ -39,24 +39,6 @@ bool walk(const RayNodes& nodes, const Node& node, const RayPath& path, RayArriv
   return false;
 }
 
-// The part of the range in which the ray is inside of the box; nothing where it misses.
-std::optional<RayRange> clip(const RayPath& path, const openvdb::CoordBBox& box, RayRange range) {
-  for (std::size_t axis = 0; axis < 3; ++axis) {
-    const double low = box.min()[static_cast<int>(axis)];
-    const double high = box.max()[static_cast<int>(axis)] + 1.0;
-    if (path.direction[axis] == 0) {
-      if (path.origin[axis] < low || path.origin[axis] >= high) return std::nullopt;
-      continue;
-    }
-    const double a = path.crossing(axis, low);
-    const double b = path.crossing(axis, high);
-    range.begin = std::max(range.begin, std::min(a, b));
-    range.end = std::min(range.end, std::max(a, b));
-  }
-  if (!(range.begin < range.end)) return std::nullopt;
-  return range;
-}
-
 // Through which face of the box the ray came to this distance: the axis whose plane it crosses last before it.
 int axis_of_entry(const RayPath& path, const openvdb::CoordBBox& box, double distance) {
   int entry = 0;

@@ -28,12 +28,6 @@ struct RayHit {
   double distance;     ///< along the ray, where it enters
 };
 
-/// Part of a ray, in multiples of its direction.
-struct RayRange {
-  double begin = 0;
-  double end = std::numeric_limits<double>::infinity();
-};
-
 /// Follows rays through a tree of bit masks: empty regions are crossed in steps of whole nodes (410 m, 13 m and 0.8 m
 /// at 10 cm), only occupied leaves voxel by voxel. Keeps a reference to the leaves; for any number of threads.
 class RayCaster {

@@ -6,6 +6,7 @@
 #include <cmath>
 #include <cstddef>
 #include <limits>
+#include <optional>
 
 #include <Eigen/Core>
 
@@ -43,6 +44,30 @@ struct RayPath {
     return direction[axis] == 0 ? std::numeric_limits<double>::infinity() : (place - origin[axis]) * inverse[axis];
   }
 };
+
+/// Part of a ray, in multiples of its direction.
+struct RayRange {
+  double begin = 0;
+  double end = std::numeric_limits<double>::infinity();
+};
+
+/// The part of the range in which the ray is inside of the box; nothing where it misses.
+inline std::optional<RayRange> clip(const RayPath& path, const openvdb::CoordBBox& box, RayRange range) {
+  for (std::size_t axis = 0; axis < 3; ++axis) {
+    const double low = box.min()[static_cast<int>(axis)];
+    const double high = box.max()[static_cast<int>(axis)] + 1.0;
+    if (path.direction[axis] == 0) {
+      if (path.origin[axis] < low || path.origin[axis] >= high) return std::nullopt;
+      continue;
+    }
+    const double a = path.crossing(axis, low);
+    const double b = path.crossing(axis, high);
+    range.begin = std::max(range.begin, std::min(a, b));
+    range.end = std::min(range.end, std::max(a, b));
+  }
+  if (!(range.begin < range.end)) return std::nullopt;
+  return range;
+}
 
 /// How the ray came to where it is.
 struct RayArrival {

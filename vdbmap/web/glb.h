@@ -23,7 +23,7 @@ struct GlbOptions {
 /// compressed (EXT_meshopt_compression), a node a block. Its axes are glTF's, y up, and 3D Tiles turn them back.
 ///
 /// Attributes: POSITION, the voxel's index from the node's extras `min_index`; COLOR_0, linear; and _VOXEL, four bytes:
-/// code of the label, ChangeMark, AirFaces, age. Extras of a node are `voxel_size`, `min_index` and, where there are
+/// code of the label, Change, AirFaces, age. Extras of a node are `voxel_size`, `min_index` and, where there are
 /// details, `details`, their address, and `first_detail`, the number there of the node's first point. Equal points give
 /// equal bytes. Throws std::invalid_argument without blocks.
 std::string glb_of(std::span<const TileBlock> blocks, const GlbOptions& options);

@@ -7,10 +7,10 @@
 #include <utility>
 #include <vector>
 
+#include "vdbmap/change/map_diff.h"
 #include "vdbmap/core/hierarchy.h"
 #include "vdbmap/core/voxel_assembly.h"
 #include "vdbmap/core/voxel_block.h"
-#include "vdbmap/io/vdb/change_marks.h"
 
 namespace vdbmap {
 namespace {
@@ -72,7 +72,7 @@ MarkedLevel with_marks(const VoxelLevel& level, const VoxelLevel& marks, const V
     if (voxel.in_level != kNotThere) {
       record = &level.records()[voxel.in_level];
       if (!level.channels().labels.empty()) label = level.channels().labels[voxel.in_level];
-    } else if (static_cast<ChangeMark>(mark) == ChangeMark::kVanished) {
+    } else if (static_cast<Change>(mark) == Change::kVanished) {
       record = finder ? finder->find(index) : nullptr;
       if (record && !before->channels().labels.empty()) {
         label = before->channels().labels[static_cast<std::size_t>(record - before->records().data())];

@@ -10,7 +10,7 @@ namespace vdbmap {
 /// A level, and what became of its voxels since the epoch before.
 struct MarkedLevel {
   VoxelLevel voxels;
-  std::optional<VoxelLevel> marks;  ///< the same voxels; labels are ChangeMark, kNoLabel for none
+  std::optional<VoxelLevel> marks;  ///< the same voxels; labels are Change, kNoLabel for none
 
   /// The level whose voxels are twice as long. A voxel is marked as most points of its marked children are.
   MarkedLevel coarsened() const;

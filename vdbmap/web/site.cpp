@@ -12,9 +12,10 @@
 
 #include "vdbmap/core/error.h"
 #include "vdbmap/core/voxel_map.h"
-#include "vdbmap/io/vdb/change_marks.h"
+#include "vdbmap/io/vdb/diff_file.h"
 #include "vdbmap/render/label_colors.h"
 #include "vdbmap/store/city_folder.h"
+#include "vdbmap/web/change_marks.h"
 #include "vdbmap/web/label_code.h"
 #include "vdbmap/web/site_folder.h"
 #include "vdbmap/web/site_placement.h"
@@ -173,13 +174,13 @@ std::string site_json(const SiteFrame& site, const std::vector<EpochWritten>& ep
 }
 
 // Marks of a diff of maps like those of the site.
-std::optional<ChangeMarks> load_marks(const SiteFrame& site, const SiteOptions& options) {
+std::optional<VoxelLevel> load_marks(const SiteFrame& site, const SiteOptions& options) {
   if (options.diff.empty()) return std::nullopt;
-  ChangeMarks marks = load_change_marks(options.diff);
-  if (marks.frame != site.frame || marks.level.voxel_size() != site.grid.finest_voxel_size) {
+  const MapDiff diff = load_diff(options.diff);
+  if (diff.frame != site.frame || diff.voxel_size() != site.grid.finest_voxel_size) {
     throw IoError::malformed(options.diff, "is of maps with another anchor, EPSG code or voxel size");
   }
-  return marks;
+  return change_marks(diff);
 }
 
 EpochWritten write_epoch(const SiteSource& source, const SiteChanges& changes, const std::string& id,
@@ -256,7 +257,7 @@ SiteWritten write_site(const std::filesystem::path& folder, const std::vector<Si
   const SiteFrame site = frame_of(sources.front());
   for (const SiteSource& source : sources) check_alike(site, source, sources.front());
   const SitePlacement placement(site.frame, options.geoid_offset);
-  const std::optional<ChangeMarks> marks = load_marks(site, options);
+  const std::optional<VoxelLevel> marks = load_marks(site, options);
   std::size_t blocks = 0;
   for (const SiteSource& source : sources) blocks += num_blocks(source);
 
@@ -265,7 +266,7 @@ SiteWritten write_site(const std::filesystem::path& folder, const std::vector<Si
   std::vector<EpochWritten> written;
   for (std::size_t i = 0; i < epochs.size(); ++i) {
     SiteChanges changes;
-    if (marks && i + 1 == epochs.size()) changes = {&marks->level, i > 0 ? &sources[i - 1] : nullptr};
+    if (marks && i + 1 == epochs.size()) changes = {&*marks, i > 0 ? &sources[i - 1] : nullptr};
     written.push_back(write_epoch(sources[i], changes, std::to_string(i + 1), epochs[i], output, placement, options));
   }
   if (!options.page.empty()) output.put_folder(options.page);

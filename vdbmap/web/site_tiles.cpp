@@ -158,7 +158,7 @@ class TileWriter {
 
   // Voxels that vanished are of the epoch before.
   void count(const TileLevel& source, const LeavesOfTiles& tiles) {
-    constexpr auto kVanished = static_cast<std::int32_t>(ChangeMark::kVanished);
+    constexpr auto kVanished = static_cast<std::int32_t>(Change::kVanished);
     for (const auto& [tile, leaves] : tiles) {
       for (const VoxelLeaf* leaf : leaves) {
         for_each_voxel(*leaf, [&](const VoxelIndex&, std::size_t i) {

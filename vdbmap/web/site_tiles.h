@@ -24,7 +24,7 @@ struct SiteTiles {
 
 /// What became of the voxels of an epoch since the one before.
 struct SiteChanges {
-  const VoxelLevel* marks = nullptr;   ///< of a diff, see ChangeMarks; nullptr: nothing is known
+  const VoxelLevel* marks = nullptr;   ///< of a diff, see change_marks(); nullptr: nothing is known
   const SiteSource* before = nullptr;  ///< what vanished looks as it did there
 };
 

@@ -73,7 +73,7 @@ TilePoint point_of(const TileLevel& source, const SeenVoxel& seen) {
   point.position = place_of_morton(seen.morton);
   for (int i = 0; i < 3; ++i) point.color[static_cast<std::size_t>(i)] = byte_of_unit(color[i]);
   if (!channels.labels.empty()) point.label = code_of_label(source.label_scheme, channels.labels[record]);
-  if (!source.changes.empty()) point.change = static_cast<ChangeMark>(source.changes[record]);
+  if (!source.changes.empty()) point.change = static_cast<Change>(source.changes[record]);
   point.faces = source.faces[record];
   if (!channels.last_epochs.empty()) {
     const std::int64_t age = std::int64_t{source.newest_epoch} - channels.last_epochs[record];

@@ -7,8 +7,8 @@
 #include <span>
 #include <vector>
 
+#include "vdbmap/change/map_diff.h"
 #include "vdbmap/core/voxel_level.h"
-#include "vdbmap/io/vdb/change_marks.h"
 #include "vdbmap/web/air_faces.h"
 #include "vdbmap/web/label_code.h"
 
@@ -21,7 +21,7 @@ struct TilePoint {
   std::array<std::uint8_t, 3> color{};  ///< linear, 255 is 1
   std::uint8_t unused_too = 0;
   LabelCode label = 0;
-  ChangeMark change = ChangeMark::kNone;
+  Change change = Change::kUnchanged;
   AirFaces faces = 0;
   std::uint8_t age = 0;  ///< epochs since the voxel was last seen, 255 or more: 255
 
@@ -40,7 +40,7 @@ struct TileBlock {
 struct TileLevel {
   const VoxelLevel& level;
   std::span<const AirFaces> faces;        ///< a record
-  std::span<const std::int32_t> changes;  ///< a record, ChangeMark; empty: none known
+  std::span<const std::int32_t> changes;  ///< a record, Change; empty: none known
   LabelScheme label_scheme = LabelScheme::kUnknown;
   std::int32_t newest_epoch = 0;  ///< to which ages count
 };

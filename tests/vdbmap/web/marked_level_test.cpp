@@ -8,7 +8,7 @@
 
 #include "tests/support/random_points.h"
 #include "tests/support/sample_maps.h"
-#include "vdbmap/io/vdb/change_marks.h"
+#include "vdbmap/change/map_diff.h"
 
 namespace vdbmap {
 namespace {
@@ -30,9 +30,9 @@ std::map<VoxelIndex, int> labels_of(const VoxelLevel& level) {
   return labels;
 }
 
-constexpr int kAppeared = static_cast<int>(ChangeMark::kAppeared);
-constexpr int kVanished = static_cast<int>(ChangeMark::kVanished);
-constexpr int kUnobserved = static_cast<int>(ChangeMark::kUnobserved);
+constexpr int kAppeared = static_cast<int>(Change::kAppeared);
+constexpr int kVanished = static_cast<int>(Change::kVanished);
+constexpr int kUnobserved = static_cast<int>(Change::kUnobserved);
 
 TEST(MarkedLevel, HasTheVoxelsOfTheLevelAndThoseThatVanished) {
   std::map<VoxelIndex, int> level, marks, expected, expected_marks;

@@ -24,6 +24,7 @@
 #include "vdbmap/core/map_merge.h"
 #include "vdbmap/core/map_tiles.h"
 #include "vdbmap/io/geodesy/geodetic_transform.h"
+#include "vdbmap/io/vdb/diff_file.h"
 #include "vdbmap/io/vdb/map_file.h"
 #include "vdbmap/io/vdb/vdb_file.h"
 #include "vdbmap/store/city_of_map.h"
@@ -426,17 +427,14 @@ TEST_F(SiteTest, ADiffMarksTheLastEpochAndShowsWhatVanished) {
   options.diff = saved("diff.vdb", before);
   const std::vector<SiteEpoch> epochs = {{saved("a.vdb", before), ""}, {saved("b.vdb", after), ""}};
   EXPECT_EQ(test::io_error_of([&] { write_site(folder_ / "site", epochs, options); }),
-            "diff.vdb: is no diff: it has no grid 'changed'");
-  const VdbContent content = read_vdb(folder_ / "diff.vdb");
-  openvdb::GridCPtrVec grids(content.grids.begin(), content.grids.end());
-  for (const std::string name : {"appeared", "vanished", "changed", "unobserved"}) {
-    auto grid = openvdb::FloatGrid::create();
-    grid->setName(name);
-    if (name == "appeared") grid->tree().setValue({900, 0, 0}, 1);
-    if (name == "vanished") grid->tree().setValue({2, 0, 0}, 1);
-    grids.push_back(grid);
-  }
-  write_vdb(folder_ / "diff.vdb", grids, *content.metadata);
+            "diff.vdb: is no diff: it lacks the grids that `vdbmap diff -o` writes");
+  save_diff(folder_ / "diff.vdb", {.frame = after.frame,
+                                   .label_scheme = LabelScheme::kUnknown,
+                                   .counts = {},
+                                   .appeared = {test::map_of_voxels({{900, 0, 0}}).finest(), {1.0f}},
+                                   .vanished = {test::map_of_voxels({{2, 0, 0}}).finest(), {1.0f}},
+                                   .changed = {VoxelLevel(0.1, {}, {}), {}},
+                                   .unobserved = VoxelTree({})});
   const SiteWritten written = write_site(folder_ / "site", epochs, options);
   EXPECT_EQ(written.num_voxels, 6U) << "what vanished is no voxel of the later epoch";
   std::map<VoxelIndex, int> changes;
