@@ -117,6 +117,12 @@ void check_visibility(const Visibility& visibility, const VoxelLevel& level) {
   }
 }
 
+// Without colours of its own a map counts as uncoloured still: where it is merged, voxels of both have those of the
+// other.
+void paint(VoxelMap& map, const Eigen::Vector3d& linear_rgb) {
+  for (VoxelRecord& record : map.levels.front().records()) set_color(record, linear_rgb);
+}
+
 // Leaves of two trees together, without what is occupied now.
 VoxelTree united(const VoxelTree& a, const VoxelTree& b, const VoxelTree& without) {
   LargeVector<VoxelLeaf> leaves;
@@ -208,8 +214,9 @@ UpdatedMap update_map(const VoxelMap& map, const std::optional<Visibility>& befo
 
   UpdatedMap updated;
   updated.counts = update.counts();
-  updated.map = merge_maps(keep_voxels(map, [&](std::size_t i) { return update.stays(i); }),
-                           keep_voxels(drive, [&](std::size_t i) { return update.is_still(i); }));
+  VoxelMap still = keep_voxels(drive, [&](std::size_t i) { return update.is_still(i); });
+  if (map.has_color && !drive.has_color) paint(still, kUnknownColor);
+  updated.map = merge_maps(keep_voxels(map, [&](std::size_t i) { return update.stays(i); }), still);
   const VoxelTree& occupied = updated.map.finest().tree();
   const VoxelTree left =
       united(voxels_of(map.finest(), [&](std::size_t i) { return !update.stays(i); }),

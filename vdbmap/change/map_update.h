@@ -5,6 +5,8 @@
 #include <cstdint>
 #include <optional>
 
+#include <Eigen/Core>
+
 #include "vdbmap/change/ray_evidence.h"
 #include "vdbmap/change/seen_through.h"
 #include "vdbmap/core/posed_cloud.h"
@@ -24,6 +26,10 @@ struct UpdateOptions {
   /// Throws std::invalid_argument naming the value and what is allowed.
   void check() const;
 };
+
+/// Linear grey, of voxels that only a drive without colours saw in a map with colours: in pictures, black reads as a
+/// shadow.
+inline const Eigen::Vector3d kUnknownColor = Eigen::Vector3d::Constant(0.25);
 
 /// What became of voxels of the finest level.
 struct UpdateCounts {

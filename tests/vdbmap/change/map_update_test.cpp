@@ -168,6 +168,27 @@ TEST(MapUpdate, CutsOrderAndThreadsChangeNothing) {
   ASSERT_EQ(once.visibility.seen_empty.leaves().size(), again.visibility.seen_empty.leaves().size());
 }
 
+TEST(MapUpdate, WhatADriveWithoutColorsFoundIsGrey) {
+  PointCloud survey = test::sample_scene(ground(), 2000, 4);
+  survey.colors.assign(survey.size(), {0, 0, 65535});
+  const VoxelMap before = build_map(survey, test::anchored(Eigen::Vector3d::Zero()));
+  const Drive drive = drive_through(10, [](double) { return with(ground(), car_at(0, 4)); });
+  const UpdatedMap updated = update_map(before, std::nullopt, drive.source());
+  const VoxelFinder old(before.finest());
+  std::size_t num_grey = 0;
+  for_each_voxel(updated.map.finest(), [&](const VoxelIndex& voxel, std::size_t record) {
+    const Eigen::Vector3d color = color_of(updated.map.finest().records()[record]);
+    const bool is_grey = (color - kUnknownColor).norm() < 0.01;
+    const bool is_blue = color.z() > 0.99 && color.x() < 0.01;
+    ASSERT_TRUE(is_blue || is_grey) << color.transpose();
+    if (is_blue) {
+      ASSERT_NE(old.find(voxel), nullptr);
+    }
+    num_grey += is_grey ? 1 : 0;
+  });
+  EXPECT_GT(num_grey, 300U);
+}
+
 TEST(MapUpdate, EpochsSayWhenEachPartWasSeen) {
   BuildOptions first = test::anchored(Eigen::Vector3d::Zero());
   first.epoch = 1;
