@@ -7,6 +7,8 @@
 
 namespace vdbmap {
 
+class Projection;
+
 /// Places of a projected coordinate system on the globe, by PROJ. Offline: grids of datum shifts are used where they
 /// are installed, else the best transformation without them.
 ///
@@ -37,8 +39,8 @@ class GeodeticTransform {
   Eigen::Vector3d to_ecef(const Eigen::Vector3d& original) const;
 
  private:
-  struct Proj;
-  std::unique_ptr<Proj> proj_;
+  std::unique_ptr<Projection> projection_;
+  double geoid_offset_;  // [m]
 };
 
 }  // namespace vdbmap
