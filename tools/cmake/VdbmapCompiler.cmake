@@ -25,6 +25,12 @@ if(VDBMAP_SANITIZE)
   if(VDBMAP_SANITIZE MATCHES "undefined")
     target_compile_options(vdbmap_compiler INTERFACE $<$<CXX_COMPILER_ID:Clang>:-fno-sanitize=alignment>)
   endif()
+  # Bad addresses are seen by the address sanitizer when they are used: looking at every pointer twice would take a quarter
+  # of the compilation.
+  if(VDBMAP_SANITIZE MATCHES "undefined" AND VDBMAP_SANITIZE MATCHES "address")
+    target_compile_options(vdbmap_compiler INTERFACE
+      $<$<CXX_COMPILER_ID:Clang>:-fno-sanitize=null,object-size,vptr,pointer-overflow,nonnull-attribute,returns-nonnull-attribute>)
+  endif()
   # GCC warns of values that its own instrumentation makes look uninitialized.
   target_compile_options(vdbmap_compiler INTERFACE $<$<CXX_COMPILER_ID:GNU>:-Wno-maybe-uninitialized>)
   target_link_options(vdbmap_compiler INTERFACE -fsanitize=${VDBMAP_SANITIZE})
