@@ -62,6 +62,34 @@ TEST_F(Labels, InfoTellsTheClassesAndTheirShares) {
   EXPECT_NE(text.find("road "), std::string::npos) << text;
 }
 
+TEST_F(Labels, ClassesThatAreNotWantedDoNotComeIntoTheMap) {
+  std::vector<std::string> command = labelled_scans();
+  build(command, "all.vdb");
+  command.insert(command.begin(), "build");
+  command.insert(command.end(), {"--drop", "road", "-o", path("map.vdb")});
+  const json built = json_of(command);
+  const json all = json_of({"info", path("all.vdb")});
+  const json map = json_of({"info", path("map.vdb")});
+  EXPECT_EQ(built["points_of_dropped_classes"].get<int>() + map["points"].get<int>(), all["points"].get<int>());
+  ASSERT_EQ(map["labels"]["classes"].size(), 1U);
+  EXPECT_EQ(map["labels"]["classes"][0]["name"], "building");
+  // With rays too, of which scans are read twice.
+  command.back() = path("rays.vdb");
+  command.insert(command.end(), {"--visibility", "--pose-frame", "lidar"});
+  EXPECT_EQ(json_of(command)["points_of_dropped_classes"], built["points_of_dropped_classes"]);
+  EXPECT_EQ(json_of({"info", path("rays.vdb")})["labels"]["classes"], map["labels"]["classes"]);
+}
+
+TEST_F(Labels, ClassesThatNobodyKnowsAreNotDroppedInSilence) {
+  std::vector<std::string> command = labelled_scans();
+  command.insert(command.begin(), "build");
+  command.insert(command.end(), {"-o", path("map.vdb"), "--drop", "roads"});
+  expect_error(vdbmap(command), ExitCode::kWrongUsage, "none is \"roads\"");
+  expect_error(vdbmap({"build", ply("a.ply", scan(1)), "--drop", "person", "-o", path("map.vdb")}),
+               ExitCode::kWrongUsage, "have no classes");
+  EXPECT_FALSE(std::filesystem::exists(path("map.vdb")));
+}
+
 TEST_F(Labels, QueryNamesTheClass) {
   const std::string map = labelled_map();
   const json voxels = json_of({"query", map, "--box=-9,-9,-9,9,9,9"});

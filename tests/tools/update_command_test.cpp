@@ -11,7 +11,9 @@
 #include "tests/support/synthetic_scene.h"
 #include "tests/tools/map_command.h"
 #include "vdbmap/io/kitti/kitti_bin.h"
+#include "vdbmap/io/kitti/label_file.h"
 #include "vdbmap/io/las/las.h"
+#include "vdbmap/io/points/point_reader.h"
 #include "vdbmap/io/poses/trajectory_file.h"
 
 namespace vdbmap::cli {
@@ -82,6 +84,33 @@ TEST_F(Update, TakesAwayWhatIsGoneAndKeepsTheHistory) {
   EXPECT_EQ(info["visibility"], true);
   EXPECT_EQ(info["epochs"], json({{"first", 1}, {"last", 2}}));
   EXPECT_EQ(vdbmap({"check", path("after.vdb")}).exit_code, 0);
+}
+
+TEST_F(Update, ClassesThatAreNotWantedDoNotComeIntoTheMap) {
+  const std::string before = map_with_box();
+  drive("second", true);
+  constexpr std::uint16_t kPerson = 30;
+  constexpr std::uint16_t kRoad = 40;
+  std::filesystem::create_directory(path("labels"));
+  std::size_t num_persons = 0;
+  for (int i = 0; i < 6; ++i) {
+    const std::string name = std::to_string(i);
+    std::vector<PointLabel> labels;
+    for (const Eigen::Vector3d& point : read_points(path("second/" + name + ".bin")).cloud.positions) {
+      labels.push_back({point.x() > 0 ? kPerson : kRoad, 0});
+      num_persons += point.x() > 0 ? 1 : 0;
+    }
+    write_labels(path("labels/" + name + ".label"), labels);
+  }
+  std::vector<std::string> command = arguments(before, "second", "after.vdb");
+  command.insert(command.end(), {"--labels", path("labels"), "--drop", "person"});
+  const json report = json_of(command);
+  EXPECT_EQ(report["points_of_dropped_classes"], num_persons);
+  std::size_t num_points = 0;
+  for (int i = 0; i < 6; ++i) {
+    num_points += read_points(path("second/" + std::to_string(i) + ".bin")).cloud.size();
+  }
+  EXPECT_EQ(report["voxels"]["points"], num_points - num_persons);
 }
 
 TEST_F(Update, TheSameScansAreNotCountedTwice) {

@@ -16,6 +16,7 @@
 #include "tools/cli/build_inputs.h"
 #include "tools/cli/build_report.h"
 #include "tools/cli/city_output.h"
+#include "tools/cli/class_options.h"
 #include "tools/cli/command.h"
 #include "tools/cli/date_option.h"
 #include "tools/cli/map_output.h"
@@ -60,8 +61,7 @@ struct BuildCommandOptions {
   std::optional<int> epsg;
   std::optional<std::int32_t> epoch;
   std::string date;
-  std::optional<std::filesystem::path> labels;
-  std::string label_scheme;
+  ClassOptions classes;
   std::optional<double> min_range;  // [m]
   std::optional<double> max_range;  // [m]
   RayOptions rays;
@@ -92,18 +92,6 @@ void add_map_options(CLI::App& app, BuildCommandOptions& options) {
       ->check(CLI::Range(0, std::numeric_limits<std::int32_t>::max()).description(""))
       ->type_name("N");
   add_date(app, options.date, "the survey, which vdbmap log then tells");
-}
-
-void add_label_options(CLI::App& app, BuildCommandOptions& options) {
-  app.add_option("--labels", options.labels,
-                 "Classes of the points: SemanticKITTI's .label file of the one cloud, or a folder with NAME.label for "
-                 "each scan NAME (default: those that the point files hold)")
-      ->type_name("PATH");
-  app.add_option("--label-scheme", options.label_scheme,
-                 "Whose numbers the classes are: asprs or semantickitti (default: asprs of LAS, semantickitti of "
-                 "--labels, else unknown)")
-      ->check(CLI::IsMember({text_of(LabelScheme::kAsprs), text_of(LabelScheme::kSemanticKitti)}).description(""))
-      ->type_name("NAME");
 }
 
 void add_range_options(CLI::App& app, BuildCommandOptions& options, CLI::Option* poses) {
@@ -147,7 +135,7 @@ void add_options(CLI::App& app, BuildCommandOptions& options) {
   add_pose_frame(app, options.pose_frame);
   add_scan_selection(app, options.selection);
   add_map_options(app, options);
-  add_label_options(app, options);
+  add_class_options(app, options.classes);
   add_read_options(app, options.read);
   add_map_output(app, options.output, /*may_be_city=*/true);
   CLI::Option* output = app.get_option("--output");
@@ -205,7 +193,8 @@ MapFromFilesOptions files_options(const BuildOptions& build_options, const Build
                                   const CommonOptions& common) {
   MapFromFilesOptions options;
   options.build = build_options;
-  options.inputs.label_scheme = label_scheme_of(command.label_scheme);
+  options.inputs.label_scheme = command.classes.scheme();
+  options.inputs.dropped_classes = command.classes.dropped;
   options.inputs.read = command.read;
   options.inputs.range = range_of(command);
   options.inputs.reads_ahead = common.num_threads != 1;
@@ -276,8 +265,10 @@ MapFromFiles build_of_drive(PosedDrive& drive, const MapFromFilesOptions& files,
   MapBuilder builder(files.build);
   drive.for_each([&](const PosedCloud& posed) { builder.add(posed.cloud, posed.map_from_cloud); });
   MapFromFiles built{builder.finish(), {}};
+  built.map.label_scheme = drive.label_scheme();
   built.notes.num_points = num_points(built.map.finest());
   built.notes.num_out_of_range = drive.num_out_of_range();
+  built.notes.num_of_dropped_classes = drive.num_of_dropped_classes();
   if (built.notes.num_points == 0) {
     throw IoError::malformed(chosen.inputs.front().scan.file, "and the other scans hold no point within the range");
   }
@@ -289,7 +280,8 @@ void run_with_rays_of_scans(const ChosenInputs& chosen, const std::vector<ScanPl
                             const BuildCommandOptions& options, const CommonOptions& common) {
   const auto start = std::chrono::steady_clock::now();
   Progress progress("building from scans, then following rays", 2 * chosen.inputs.size(), common);
-  PosedDrive drive(chosen.inputs, all, {options.read, files.inputs.range, true, [&progress] { progress.advance(); }});
+  PosedDrive drive(chosen.inputs, all,
+                   {options.read, files.inputs.range, options.classes, true, [&progress] { progress.advance(); }});
   const MapFromFiles built = build_of_drive(drive, files, chosen);
   const MapExtras extras{find_visibility(built.map, [&](const auto& take) { drive.for_each(take); }),
                          history_of(chosen, options)};
@@ -304,7 +296,7 @@ void run_for_file(const ChosenInputs& chosen, const MapFromFilesOptions& files, 
   const auto start = std::chrono::steady_clock::now();
   const MapFromFiles built = build(chosen.inputs, files, common);
   warn_of(built.notes, built.map.frame.epsg);
-  warn_without_labels(options.label_scheme, !built.map.finest().channels().labels.empty());
+  warn_without_labels(options.classes.scheme_name, !built.map.finest().channels().labels.empty());
   const ReadingReport reading = complete(listed, built.notes, chosen, options);
   MapExtras extras;
   if (options.rays.trajectory) extras = extras_of_survey(built.map, chosen, files.inputs, options.rays, common);
@@ -320,7 +312,7 @@ void run_for_city(const ChosenInputs& chosen, const MapFromFilesOptions& files, 
       build_city_of(chosen.inputs, files, options.output.save, options.output.file, options.city, common);
   const CityLayout& layout = built.manifest.layout;
   warn_of(built.notes, layout.frame.epsg);
-  warn_without_labels(options.label_scheme, std::ranges::count(layout.channels, "label") > 0);
+  warn_without_labels(options.classes.scheme_name, std::ranges::count(layout.channels, "label") > 0);
   warn_not_counted(built);
   const ReadingReport reading = complete(listed, built.notes, chosen, options);
   const std::filesystem::path folder = options.city.into ? *options.city.into : options.output.file;
@@ -357,12 +349,12 @@ ExitCode run(const BuildCommandOptions& options, const CommonOptions& common) {
   const std::vector<std::filesystem::path> files = list_inputs(options.inputs, listed);
   std::vector<std::filesystem::path> read_files = files;
   if (options.poses) read_files.push_back(*options.poses);
-  if (options.labels) read_files.push_back(*options.labels);
+  if (options.classes.labels) read_files.push_back(*options.classes.labels);
   if (options.rays.trajectory) read_files.push_back(*options.rays.trajectory);
   check_outputs(options, read_files);
   const std::vector<ScanPlace> all = list_scans(files, options.read);
   ChosenInputs chosen = choose_inputs(all, options.selection, options.poses, options.pose_frame);
-  if (options.labels) add_label_files(chosen.inputs, *options.labels);
+  if (options.classes.labels) add_label_files(chosen.inputs, *options.classes.labels);
   check_outputs(options, label_files(chosen.inputs));
   const MapFromFilesOptions input_options = files_options(build_options, options, common);
   if (options.makes_city()) {
@@ -371,7 +363,6 @@ ExitCode run(const BuildCommandOptions& options, const CommonOptions& common) {
     }
     run_for_city(chosen, input_options, listed, options, common);
   } else if (options.rays.of_scans) {
-    if (options.labels) throw std::invalid_argument("--labels and --visibility cannot be given together");
     run_with_rays_of_scans(chosen, all, input_options, listed, options, common);
   } else {
     run_for_file(chosen, input_options, listed, options, common);

@@ -33,6 +33,7 @@ void add_report(nlohmann::ordered_json& json, const BuildReport& report) {
   if (report.chosen.poses) add_pose_frame(json, *report.chosen.poses);
   json["dropped_points"] = report.notes.num_dropped;
   json["points_out_of_range"] = report.notes.num_out_of_range;
+  json["points_of_dropped_classes"] = report.notes.num_of_dropped_classes;
   json["findings"] = report.reading.json();
   json["seconds"] = report.seconds;
 }
@@ -49,6 +50,9 @@ std::string text_of_left_out(const BuildReport& report) {
   }
   if (report.notes.num_out_of_range > 0) {
     text += fmt::format("left out   {} points out of range\n", report.notes.num_out_of_range);
+  }
+  if (report.notes.num_of_dropped_classes > 0) {
+    text += fmt::format("dropped    {} points of the classes not wanted\n", report.notes.num_of_dropped_classes);
   }
   return text;
 }

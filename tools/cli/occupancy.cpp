@@ -123,7 +123,7 @@ LaterEpoch look_at_scans(const OccupancyCommandOptions& options, const CommonOpt
   Progress progress("looking along rays", chosen.inputs.size(), common);
   PosedDrive drive(
       chosen.inputs, all,
-      {.read = options.read, .range = std::nullopt, .deskews = !options.has_moved_points, .on_scan_done = [&progress] {
+      {.read = options.read, .range = std::nullopt, .classes = {}, .deskews = !options.has_moved_points, .on_scan_done = [&progress] {
          progress.advance();
        }});
   parking::DriveEvidence evidence(map, spaces, ground);

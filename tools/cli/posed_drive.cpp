@@ -9,6 +9,8 @@
 
 #include "registration/posed_scans.h"
 #include "vdbmap/core/error.h"
+#include "vdbmap/io/kitti/label_file.h"
+#include "vdbmap/io/points/class_filter.h"
 #include "vdbmap/io/points/point_cloud_filter.h"
 
 namespace vdbmap::cli {
@@ -39,7 +41,7 @@ void PosedDrive::for_each(const std::function<void(const PosedCloud&)>& take) {
   for (std::size_t i = 0; i < inputs_.size(); ++i) {
     if (places_[i] > next_place) deskewed.pass_over(places_[i] - next_place);
     next_place = places_[i] + 1;
-    std::optional<PointCloud> scan = read(reader, inputs_[i].scan);
+    std::optional<PointCloud> scan = read(reader, inputs_[i]);
     if (!scan) {
       deskewed.pass_over(1);
     } else if (options_.deskews) {
@@ -54,12 +56,18 @@ void PosedDrive::for_each(const std::function<void(const PosedCloud&)>& take) {
   is_first_time_ = false;
 }
 
-std::optional<PointCloud> PosedDrive::read(ScanReader& reader, const ScanPlace& scan) {
+std::optional<PointCloud> PosedDrive::read(ScanReader& reader, const MapInput& input) {
+  const std::filesystem::path& file = input.scan.file;
   try {
-    ReadResult read = reader.read(scan);
+    ReadResult read = reader.read(input.scan);
+    if (input.labels) attach_labels(read, *input.labels);
+    const ClassOptions& classes = options_.classes;
+    const std::size_t num_of_classes = drop_classes(file, read, classes.dropped, classes.scheme());
     const std::size_t num_dropped = options_.range ? drop_out_of_range(read, *options_.range) : 0;
     if (is_first_time_) {
-      reading_.add(scan.file, read.findings);
+      reading_.add(file, read.findings);
+      num_of_dropped_classes_ += num_of_classes;
+      if (!read.cloud.labels.empty()) schemes_.insert(classes.scheme().value_or(read.label_scheme));
       num_out_of_range_ += num_dropped;
     }
     return std::move(read.cloud);

@@ -17,6 +17,7 @@
 
 #include "tools/cli/build_inputs.h"
 #include "tools/cli/city_output.h"
+#include "tools/cli/class_options.h"
 #include "tools/cli/command.h"
 #include "tools/cli/date_option.h"
 #include "tools/cli/map_output.h"
@@ -48,6 +49,7 @@ struct UpdateCommandOptions {
   double min_range = 0;  // [m]
   double max_range = std::numeric_limits<double>::infinity();
   bool has_moved_points = false;
+  ClassOptions classes;
   ReadOptions read;
   MapOutput output;
 };
@@ -80,6 +82,7 @@ void add_options(CLI::App& app, UpdateCommandOptions& options) {
       ->type_name("R");
   app.add_flag("--no-deskew", options.has_moved_points,
                "The points of scans with times were moved to one time already");
+  add_class_options(app, options.classes);
   add_read_options(app, options.read);
   add_map_output(app, options.output);
 }
@@ -150,6 +153,7 @@ void report(const UpdatedMap& updated, const UpdateCommandOptions& options, cons
                 {"scans_too_uncertain", scans.uncertain},
                 {"scans_damaged", scans.damaged},
                 {"points_out_of_range", drive.num_out_of_range()},
+                {"points_of_dropped_classes", drive.num_of_dropped_classes()},
                 {"voxels", json_of(counts)},
                 {"findings", drive.reading().json()},
                 {"seconds", seconds}});
@@ -162,6 +166,8 @@ void report(const UpdatedMap& updated, const UpdateCommandOptions& options, cons
   if (scans.uncertain > 0)
     text += fmt::format("left out   {} scans whose place is less certain than a voxel\n", scans.uncertain);
   if (scans.damaged > 0) text += fmt::format("left out   {} damaged scans\n", scans.damaged);
+  if (drive.num_of_dropped_classes() > 0)
+    text += fmt::format("dropped    {} points of the classes not wanted\n", drive.num_of_dropped_classes());
   text += fmt::format(
       "added      {:9} voxels\ngone       {:9} seen through\nreplaced   {:9} something else is there\n"
       "confirmed  {:9} seen again\nunseen     {:9} nobody looked\nmoved      {:9} left out, {} points\n",
@@ -206,6 +212,7 @@ ExitCode run(const UpdateCommandOptions& options, const CommonOptions& common) {
   MapHistory history = load_history(options.map);
   const std::vector<ScanPlace> all = list_scans(files, options.read);
   ChosenInputs chosen = choose_inputs(all, options.selection, options.poses, options.pose_frame);
+  if (options.classes.labels) add_label_files(chosen.inputs, *options.classes.labels);
   listed.warn();
   ScanCounts scans;
   drop_uncertain(chosen.inputs, options, map.finest().voxel_size(), scans);
@@ -223,15 +230,21 @@ ExitCode run(const UpdateCommandOptions& options, const CommonOptions& common) {
   update.epoch = epoch.number;
   Progress progress("updating from scans", 2 * inputs.size(), common);
   PosedDrive drive(inputs, all,
-                   {options.read, RangeLimits{options.min_range, options.max_range}, !options.has_moved_points,
-                    [&progress] { progress.advance(); }});
-  const UpdatedMap updated = update_map(
+                   {options.read, RangeLimits{options.min_range, options.max_range}, options.classes,
+                    !options.has_moved_points, [&progress] { progress.advance(); }});
+  UpdatedMap updated = update_map(
       map, before, [&](const auto& take) { drive.for_each(take); }, update);
   drive.reading().warn();
   if (updated.counts.confirmed + updated.counts.replaced + updated.counts.gone == 0 && map.finest().size() > 0) {
     throw IoError::malformed(options.poses, "the scans do not meet the map " + options.map.string() +
                                                 " anywhere: no voxel of it was seen again or through");
   }
+  if (drive.has_labels() && drive.label_scheme() != map.label_scheme && map.label_scheme != LabelScheme::kUnknown) {
+    throw IoError::malformed(inputs.front().scan.file,
+                             "has, or scans after it have, classes of " + std::string(text_of(drive.label_scheme())) +
+                                 ", the map " + options.map.string() + " of " + std::string(text_of(map.label_scheme)));
+  }
+  if (map.label_scheme == LabelScheme::kUnknown) updated.map.label_scheme = drive.label_scheme();
   scans.damaged = drive.num_damaged();
   scans.used = inputs.size() - scans.damaged;
   for (MapSource& source : added) source.epoch = epoch.number;

@@ -129,4 +129,13 @@ std::string label_name(LabelScheme scheme, std::int32_t label) {
   return found == names.end() ? "class " + std::to_string(label) : std::string(found->second);
 }
 
+std::vector<std::int32_t> labels_named(LabelScheme scheme, std::string_view name) {
+  constexpr std::string_view kMoving = "moving-";
+  std::vector<std::int32_t> labels;
+  for (const auto& [label, text] : names_of(scheme)) {
+    if (text == name || (text.starts_with(kMoving) && text.substr(kMoving.size()) == name)) labels.push_back(label);
+  }
+  return labels;
+}
+
 }  // namespace vdbmap

@@ -5,6 +5,7 @@
 #include <optional>
 #include <string>
 #include <string_view>
+#include <vector>
 
 namespace vdbmap {
 
@@ -26,6 +27,10 @@ std::optional<LabelScheme> label_scheme_of(std::string_view text);
 
 /// What a label stands for: "road", "no class"; "class 117" where the scheme does not say.
 std::string label_name(LabelScheme scheme, std::int32_t label);
+
+/// The labels of a name, those of what moves included: "person" is the moving person too. Empty where the scheme has
+/// none.
+std::vector<std::int32_t> labels_named(LabelScheme scheme, std::string_view name);
 
 /// The ASPRS class that comes nearest to a label: 1 (unclassified) for what ASPRS has no class for, like vehicles.
 /// Labels of an unknown scheme stay what they are.

@@ -11,6 +11,7 @@
 #include "vdbmap/core/error.h"
 #include "vdbmap/io/kitti/label_file.h"
 #include "vdbmap/io/las/las_pieces.h"
+#include "vdbmap/io/points/class_filter.h"
 #include "vdbmap/io/points/point_cloud_filter.h"
 
 namespace vdbmap {
@@ -21,6 +22,7 @@ struct Piece {
   std::size_t index = 0;  // of the input
   ReadResult read;
   std::size_t num_out_of_range = 0;
+  std::size_t num_of_dropped_classes = 0;
   bool is_first = true;  // of the input
   bool is_last = true;
 };
@@ -37,7 +39,8 @@ class PieceReader {
     const bool is_first = !pieces_;
     if (is_first) open_large_file();
     if (!pieces_) return read_whole();
-    Piece piece{next_, pieces_->next(), 0, is_first, pieces_->is_at_end()};
+    Piece piece{next_, pieces_->next(), 0, 0, is_first, pieces_->is_at_end()};
+    drop(piece);
     if (piece.is_last) {
       pieces_.reset();
       ++next_;
@@ -58,8 +61,14 @@ class PieceReader {
     const MapInput& input = inputs_[next_];
     Piece piece{next_++, reader_.read(input.scan)};
     if (input.labels) attach_labels(piece.read, *input.labels);
+    drop(piece);
     if (options_.range && input.map_from_scan) piece.num_out_of_range = drop_out_of_range(piece.read, *options_.range);
     return piece;
+  }
+
+  void drop(Piece& piece) const {
+    piece.num_of_dropped_classes =
+        drop_classes(inputs_[piece.index].scan.file, piece.read, options_.dropped_classes, options_.label_scheme);
   }
 
   const std::vector<MapInput>& inputs_;
@@ -180,6 +189,7 @@ InputNotes read_inputs(const std::vector<MapInput>& inputs, const InputOptions& 
     }
     notes.num_points += cloud.size();
     notes.num_out_of_range += piece.num_out_of_range;
+    notes.num_of_dropped_classes += piece.num_of_dropped_classes;
     name_scan(input, [&] {
       left_out.add(take({piece.index, cloud, piece.is_first && piece.is_last}), cloud.size());
       if (piece.is_last) check_reached(left_out.unreachable, left_out.num_points);

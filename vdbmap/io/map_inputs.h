@@ -6,6 +6,7 @@
 #include <functional>
 #include <limits>
 #include <optional>
+#include <string>
 #include <vector>
 
 #include <Eigen/Geometry>
@@ -30,10 +31,11 @@ Eigen::Isometry3d pose_of(const MapInput& input);
 
 /// How inputs of a map are read.
 struct InputOptions {
-  std::optional<LabelScheme> label_scheme;  ///< whose numbers labels are, instead of what the files' formats say
-  ReadOptions read;                         ///< `is_in_sensor_frame` as the inputs have poses
-  std::optional<RangeLimits> range;         ///< of the points of inputs with poses, from their sensor
-  bool reads_ahead = true;                  ///< a thread of its own reads what comes next while points are taken
+  std::optional<LabelScheme> label_scheme;   ///< whose numbers labels are, instead of what the files' formats say
+  std::vector<std::string> dropped_classes;  ///< points of which are left out, see drop_classes()
+  ReadOptions read;                          ///< `is_in_sensor_frame` as the inputs have poses
+  std::optional<RangeLimits> range;          ///< of the points of inputs with poses, from their sensor
+  bool reads_ahead = true;                   ///< a thread of its own reads what comes next while points are taken
   std::size_t most_points = std::numeric_limits<std::size_t>::max();  ///< of a piece of a large LAS file
   std::function<void()> on_scan_done = [] {};                         ///< called after each scan
 };
@@ -49,6 +51,7 @@ struct InputNotes {
   std::size_t num_points = 0;              ///< in the map
   std::size_t num_dropped = 0;             ///< points with a coordinate that is not finite
   std::size_t num_out_of_range = 0;        ///< points that the range left out
+  std::size_t num_of_dropped_classes = 0;  ///< points of classes that are not wanted
   std::vector<FileFinding> findings;       ///< what else was left out or is doubtful, in the order of the files
   std::optional<int> epsg_of_files;        ///< of the files in map coordinates, where one says so
   std::vector<ForeignUnit> foreign_units;  ///< taken as they are, as if in metres
