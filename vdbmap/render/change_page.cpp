@@ -19,14 +19,14 @@ namespace vdbmap {
 namespace {
 
 constexpr int kWidth = 2400;
-constexpr int kMargin = 80;
-constexpr int kInnerWidth = kWidth - 2 * kMargin;
+constexpr int kPageMargin = 80;
+constexpr int kInnerWidth = kWidth - 2 * kPageMargin;
 constexpr int kHeaderHeight = 210;
 constexpr int kPlanHeight = 920;
 constexpr int kCloseUpWidth = 700;
 constexpr int kCloseUpHeight = 340;
 constexpr int kGap = 16;
-constexpr int kTableLeft = kMargin + 2 * kCloseUpWidth + kGap + 50;
+constexpr int kTableLeft = kPageMargin + 2 * kCloseUpWidth + kGap + 50;
 constexpr std::size_t kMostCloseUps = 5;
 constexpr Rgb8 kInkColor = rgb8(0x1c1c1c);
 constexpr Rgb8 kQuietInk = rgb8(0x666666);
@@ -76,9 +76,9 @@ double compared_percent(const ChangeCounts& counts) {
 
 void draw_header(Image& page, const PageMap& earlier, const PageMap& later, const MapDiff& diff,
                  std::span<const ChangeRegion> regions) {
-  write(page, kMargin, 90, "What changed between " + title_of(earlier) + " and " + title_of(later), 52, kInkColor,
+  write(page, kPageMargin, 90, "What changed between " + title_of(earlier) + " and " + title_of(later), 52, kInkColor,
         true);
-  double x = kMargin;
+  double x = kPageMargin;
   for (const Change kind : {Change::kAppeared, Change::kVanished, Change::kChanged}) {
     const std::string text = std::to_string(count_of(regions, kind)) + " " + name_of(kind);
     fill_box(page, rectangle(x, 143, 30, 30), {rgb8(color_code_of(kind))});
@@ -102,13 +102,13 @@ Image plan_of(const PageMap& later, const MapDiff& diff, std::span<const ChangeR
 }
 
 void draw_pair(Image& page, int top, const CloseUps& pictures, const ChangeRegion& region) {
-  paste(page, pictures.before, kMargin, top);
-  paste(page, pictures.after, kMargin + kCloseUpWidth + kGap, top);
-  for (const int left : {kMargin, kMargin + kCloseUpWidth + kGap}) {
+  paste(page, pictures.before, kPageMargin, top);
+  paste(page, pictures.after, kPageMargin + kCloseUpWidth + kGap, top);
+  for (const int left : {kPageMargin, kPageMargin + kCloseUpWidth + kGap}) {
     draw_box(page, rectangle(left, top, kCloseUpWidth, kCloseUpHeight), 2, {kRuleColor});
   }
-  fill_box(page, rectangle(kMargin - 34, top, 26, kCloseUpHeight), {rgb8(color_code_of(region.kind))});
-  write(page, kMargin - 21, top + 26, std::to_string(region.id), 24, rgb8(0xffffff), true, TextAlign::kCenter);
+  fill_box(page, rectangle(kPageMargin - 34, top, 26, kCloseUpHeight), {rgb8(color_code_of(region.kind))});
+  write(page, kPageMargin - 21, top + 26, std::to_string(region.id), 24, rgb8(0xffffff), true, TextAlign::kCenter);
 }
 
 struct Column {
@@ -143,7 +143,7 @@ void draw_table(Image& page, int top, int bottom, const MapDiff& diff, std::span
   std::array<std::string, kColumns.size()> titles;
   for (std::size_t i = 0; i < titles.size(); ++i) titles[i] = kColumns[i].title;
   draw_row(page, top, titles, 23, kQuietInk, false);
-  draw_line(page, {kTableLeft - 14.0, top + 22.0}, {kWidth - kMargin + 0.0, top + 22.0}, 2, {kRuleColor});
+  draw_line(page, {kTableLeft - 14.0, top + 22.0}, {kWidth - kPageMargin + 0.0, top + 22.0}, 2, {kRuleColor});
   const auto room = static_cast<std::size_t>(std::max(0, (bottom - top - 60) / kRow));
   const std::size_t shown = std::min(regions.size(), room);
   int y = top + 50;
@@ -157,7 +157,7 @@ void draw_table(Image& page, int top, int bottom, const MapDiff& diff, std::span
 void draw_footer(Image& page, const PageMap& earlier, const PageMap& later, const MapDiff& diff) {
   const ChangeCounts& counts = diff.counts;
   const std::string system = diff.frame.epsg ? "EPSG:" + std::to_string(*diff.frame.epsg) : "a local system";
-  write(page, kMargin, page.height() - 45,
+  write(page, kPageMargin, page.height() - 45,
         earlier.name + " and " + later.name + ", voxels of " + decimals(diff.voxel_size(), 2) + " m in " + system +
             ": " + grouped(counts.appeared) + " appeared, " + grouped(counts.vanished) + " vanished, " +
             grouped(counts.changed) + " changed, " + grouped(counts.unchanged) + " unchanged, " +
@@ -174,11 +174,12 @@ Image draw_change_page(const PageMap& earlier, const PageMap& later, const MapDi
   const int pictures_height = std::max(3, num_pictures) * (kCloseUpHeight + kGap);
   Image page(kWidth, pictures_top + pictures_height + 90);
   draw_header(page, earlier, later, diff, regions);
-  paste(page, plan_of(later, diff, regions), kMargin, kHeaderHeight);
-  draw_box(page, rectangle(kMargin, kHeaderHeight, kInnerWidth, kPlanHeight), 2, {kRuleColor});
+  paste(page, plan_of(later, diff, regions), kPageMargin, kHeaderHeight);
+  draw_box(page, rectangle(kPageMargin, kHeaderHeight, kInnerWidth, kPlanHeight), 2, {kRuleColor});
   if (num_pictures > 0) {
-    write(page, kMargin, pictures_top - 34, "before: " + title_of(earlier), 28, kInkColor, true);
-    write(page, kMargin + kCloseUpWidth + kGap, pictures_top - 34, "after: " + title_of(later), 28, kInkColor, true);
+    write(page, kPageMargin, pictures_top - 34, "before: " + title_of(earlier), 28, kInkColor, true);
+    write(page, kPageMargin + kCloseUpWidth + kGap, pictures_top - 34, "after: " + title_of(later), 28, kInkColor,
+          true);
   }
   int top = pictures_top;
   for (const ChangeRegion& region : regions.first(static_cast<std::size_t>(num_pictures))) {

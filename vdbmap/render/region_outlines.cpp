@@ -16,7 +16,7 @@
 namespace vdbmap {
 namespace {
 
-constexpr double kMargin = 0.2;           // [m] between a region and its outline
+constexpr double kOutlineGap = 0.2;       // [m] between a region and its outline
 constexpr std::size_t kMostNumbers = 40;  // of the largest regions
 constexpr double kDarkness = 0.72;        // of outlines: they lie on voxels of their colour
 
@@ -29,8 +29,8 @@ Rgb8 outline_color(Change kind) {
 // The four corners of a region's box at a height, the first once more at the end [m, local frame].
 std::vector<Eigen::Vector3d> ring_of(const ChangeRegion& region, double height, const Eigen::Vector3d& anchor) {
   PlanRectangle plan = region.plan;
-  plan.length += 2 * kMargin;
-  plan.width += 2 * kMargin;
+  plan.length += 2 * kOutlineGap;
+  plan.width += 2 * kOutlineGap;
   std::vector<Eigen::Vector3d> ring;
   for (const Eigen::Vector2d& corner : plan.corners()) {
     ring.push_back(Eigen::Vector3d(corner.x(), corner.y(), height) - anchor);
@@ -40,7 +40,7 @@ std::vector<Eigen::Vector3d> ring_of(const ChangeRegion& region, double height, 
 }
 
 PathOverlay outline_of(const ChangeRegion& region, const Eigen::Vector3d& anchor, bool is_flat) {
-  PathOverlay outline{"", {ring_of(region, region.top + kMargin, anchor)}, outline_color(region.kind)};
+  PathOverlay outline{"", {ring_of(region, region.top + kOutlineGap, anchor)}, outline_color(region.kind)};
   if (is_flat) return outline;
   outline.pieces.push_back(ring_of(region, region.bottom, anchor));
   for (std::size_t i = 0; i < 4; ++i) outline.pieces.push_back({outline.pieces[0][i], outline.pieces[1][i]});

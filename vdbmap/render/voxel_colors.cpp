@@ -16,7 +16,7 @@
 namespace vdbmap {
 namespace {
 
-constexpr std::size_t kMaxSamples = 200'000;  // voxels looked at for the range of values
+constexpr std::size_t kMaxRangeSamples = 200'000;  // voxels looked at for the range of values
 constexpr std::size_t kScaleSteps = 256;
 constexpr double kLowShare = 0.01;  // of the values, that may lie outside of the scale
 constexpr double kHighShare = 0.98;
@@ -38,13 +38,13 @@ void check_available(const VoxelMap& map, const VoxelLevel& level, ColorBy color
   if (color_by == ColorBy::kChange) throw std::invalid_argument("cannot colour by change without a diff");
 }
 
-std::size_t stride_of(std::size_t size) { return size / kMaxSamples + 1; }
+std::size_t stride_of(std::size_t size) { return size / kMaxRangeSamples + 1; }
 
 // Heights of the voxels' middles in the original system.
 std::vector<double> some_heights(const VoxelMap& map, const VoxelLevel& level) {
   std::vector<double> heights;
   const std::span<const VoxelLeaf> leaves = level.leaves();
-  const std::size_t stride = level.size() / kMaxSamples + 1;
+  const std::size_t stride = level.size() / kMaxRangeSamples + 1;
   for (std::size_t i = 0; i < leaves.size(); i += stride) {
     for_each_voxel(leaves[i], [&](const VoxelIndex& voxel, std::size_t) {
       heights.push_back(center_of_voxel(voxel, level.voxel_size()).z() + map.frame.anchor.z());

@@ -7,7 +7,7 @@
 namespace vdbmap::laz {
 namespace {
 
-constexpr std::uint64_t kFrontSize = 8;  // [bytes] version, number of chunks
+constexpr std::uint64_t kTableStart = 8;  // [bytes] version, number of chunks
 
 // Where the chunks lie, in front of the table: [bytes].
 struct Place {
@@ -15,7 +15,7 @@ struct Place {
   std::uint64_t table = 0;
 
   bool is_possible(std::string_view bytes) const {
-    return table >= begin && table <= bytes.size() && bytes.size() - table >= kFrontSize;
+    return table >= begin && table <= bytes.size() && bytes.size() - table >= kTableStart;
   }
 };
 
@@ -45,7 +45,7 @@ std::optional<ChunkTable> read_chunk_table(const ByteReader& file, const LasHead
 
   ChunkTable table{place->table, {}};
   if (count == 0) return table;
-  ArithmeticDecoder decoder(bytes.substr(place->table + kFrontSize));
+  ArithmeticDecoder decoder(bytes.substr(place->table + kTableStart));
   IntegerDecoder<32> integers(2);
   ChunkSize last;
   std::uint64_t num_bytes = 0;

@@ -16,7 +16,7 @@
 namespace vdbmap {
 namespace {
 
-constexpr std::uint64_t kFrontSize = 4096;   // [bytes]
+constexpr std::uint64_t kSampleSize = 4096;  // [bytes]
 constexpr double kUnitTolerance = 1e-2;      // of vectors and quaternions that were written with few digits
 constexpr std::size_t kNumRowsLookedAt = 3;  // a count may stand on top
 
@@ -143,8 +143,8 @@ std::string reason_from_content(std::string_view front) {
 std::string reason_no_scan(const std::filesystem::path& table) {
   if (std::string reason = reason_from_name(table); !reason.empty()) return reason;
   try {
-    const std::string front = read_front(table, kFrontSize);
-    return reason_from_content(front.empty() || front.size() == kFrontSize ? front : front + "\n");
+    const std::string front = read_front(table, kSampleSize);
+    return reason_from_content(front.empty() || front.size() == kSampleSize ? front : front + "\n");
   } catch (const IoError&) {
     return {};  // reading it will say why
   }
