@@ -10,7 +10,6 @@
 namespace vdbmap::cli {
 namespace {
 
-constexpr std::uint64_t kBytesOfTask = std::uint64_t{256} << 20;
 constexpr std::size_t kMostTasks = 1000;  // MaxArraySize is 1001 by default
 
 // A word for the shell, whatever is in it.
@@ -23,7 +22,7 @@ std::string shell_word(const std::string& text) {
 // Numbers of sources or buckets, those of a task in one text: "0-3,7".
 using Tasks = std::vector<std::string>;
 
-Tasks tasks_of_sources(const Job& job, const std::vector<std::size_t>& sources) {
+Tasks tasks_of_sources(const Job& job, const std::vector<std::size_t>& sources, std::uint64_t bytes_of_task) {
   const std::size_t least = (sources.size() + kMostTasks - 1) / kMostTasks;
   Tasks tasks;
   std::vector<std::size_t> together;
@@ -31,7 +30,7 @@ Tasks tasks_of_sources(const Job& job, const std::vector<std::size_t>& sources) 
   for (const std::size_t source : sources) {
     together.push_back(source);
     num_bytes += job.plan.sources[source].num_bytes;
-    if (together.size() < least || (num_bytes < kBytesOfTask && source != sources.back())) continue;
+    if (together.size() < least || (num_bytes < bytes_of_task && source != sources.back())) continue;
     tasks.push_back(ranges_text(together));
     together.clear();
     num_bytes = 0;
@@ -91,7 +90,7 @@ SlurmStage array_stage(const Job& job, const std::string& stage, const Tasks& ta
 std::vector<SlurmStage> slurm_stages(const Job& job, const JobStatus& status, const SlurmOptions& options) {
   std::vector<SlurmStage> stages;
   if (status.is_published) return stages;
-  const Tasks map = tasks_of_sources(job, status.missing_sources);
+  const Tasks map = tasks_of_sources(job, status.missing_sources, options.bytes_of_task);
   const Tasks reduce = tasks_of_buckets(status.missing_buckets);
   const std::string memory =
       fmt::format(" --memory {}{}", options.memory_bytes, options.skips_bad ? " --skip-bad" : "");

@@ -39,6 +39,10 @@ void add_submit_options(CLI::App& app, TileSubmitOptions& options) {
   app.add_flag("--print", options.prints, "Only print the scripts and commands");
   add_memory(app, options.slurm.memory_bytes,
              "What a task that maps may take, as 500M or 2G; it asks the cluster for half as much again, [2G]");
+  app.add_option("--task-size", options.slurm.bytes_of_task,
+                 "Sources are put together until a task has so much to read, as 100M or 1G [256M]")
+      ->transform(CLI::AsSizeValue(false).description(""))
+      ->type_name("BYTES");
   app.add_flag("--skip-bad", options.slurm.skips_bad,
                "Leave a source out, by name, whose content cannot be read, instead of stopping there");
   app.add_option("--program", options.program,
