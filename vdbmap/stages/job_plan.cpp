@@ -107,7 +107,10 @@ Eigen::Isometry3d pose_of_numbers(const JsonField& field) {
 }
 
 PlannedSource planned_source(const JsonField& field) {
-  PlannedSource source{{{field.at("file").text(), std::nullopt}}, field.at("bytes").count()};
+  // Field by field: GCC 12 destroys members of nested braces twice where a later one throws.
+  PlannedSource source;
+  source.input.scan.file = field.at("file").text();
+  source.num_bytes = field.at("bytes").count();
   if (field.has("turn")) source.input.scan.turn = field.at("turn").count();
   if (field.has("map_from_scan")) source.input.map_from_scan = pose_of_numbers(field.at("map_from_scan"));
   if (field.has("labels")) source.input.labels = field.at("labels").text();

@@ -75,10 +75,14 @@ InputNotes notes_of(const JsonField& field, const std::filesystem::path& file) {
   notes.num_points = field.at("points").count();
   notes.num_dropped = field.at("dropped").count();
   notes.num_out_of_range = field.at("out_of_range").count();
-  for (const JsonField& finding : field.at("findings").elements()) {
-    notes.findings.push_back({file,
-                              {finding.at("what").text(), finding.at("count").count(), finding.at("first").text(),
-                               finding.at("is_damage").truth()}});
+  for (const JsonField& element : field.at("findings").elements()) {
+    // Field by field: GCC 12 destroys members of nested braces twice where a later one throws.
+    ReadFinding finding;
+    finding.what = element.at("what").text();
+    finding.count = element.at("count").count();
+    finding.first = element.at("first").text();
+    finding.is_damage = element.at("is_damage").truth();
+    notes.findings.push_back({file, finding});
   }
   if (!field.at("epsg").is_null()) notes.epsg_of_files = field.at("epsg").integer();
   const double unit = field.at("metres_per_unit").number();
@@ -93,10 +97,11 @@ std::vector<PartTile> part_tiles(const JsonField& field, std::uint64_t num_bytes
   std::vector<PartTile> tiles;
   std::uint64_t offset = 0;
   for (const JsonField& element : field.elements()) {
-    PartTile tile{{element.at("x").integer(), element.at("y").integer()},
-                  offset,
-                  element.at("bytes").count(),
-                  element.at("hash").hash(ContentHash::kNumDigits)};
+    PartTile tile;
+    tile.id = {element.at("x").integer(), element.at("y").integer()};
+    tile.offset = offset;
+    tile.num_bytes = element.at("bytes").count();
+    tile.hash = element.at("hash").hash(ContentHash::kNumDigits);
     if (tile.num_bytes > num_bytes_of_all - offset) element.fail("ends beyond the sums");
     offset += tile.num_bytes;
     tiles.push_back(std::move(tile));

@@ -6,7 +6,7 @@
 
 #include "vdbmap/core/error.h"
 #include "vdbmap/core/map_tiles.h"
-#include "vdbmap/core/parallel.h"
+#include "vdbmap/core/parallel_tasks.h"
 #include "vdbmap/store/city_window.h"
 #include "vdbmap/store/tile_finish.h"
 
@@ -30,7 +30,7 @@ std::vector<CityTile> renew_tiles(std::span<const TileId> ids, const TileRenewal
   for (std::size_t begin = 0; begin < ids.size(); begin += batch_size) {
     const std::span batch = ids.subspan(begin, std::min(batch_size, ids.size() - begin));
     before.load_around(batch);
-    parallel_for(batch.size(), [&](std::size_t i) {
+    parallel_tasks(batch.size(), [&](std::size_t i) {
       const TileId& id = batch[i];
       const VoxelMap tile =
           finish_tile(id, renewal.take_sums(id), finest, before.window(id, margin), renewal.added, renewal.layout);
@@ -48,7 +48,7 @@ std::vector<CityTile> renew_tiles(std::span<const TileId> ids, const TileRenewal
 std::vector<CityTile> keep_tiles(const City& base, std::vector<CityTile> tiles, const CityLayout& layout,
                                  const SaveTile& save) {
   if (layout == base.manifest.layout) return tiles;
-  parallel_for(tiles.size(), [&](std::size_t i) {
+  parallel_tasks(tiles.size(), [&](std::size_t i) {
     std::optional<VoxelMap> map = load_tile(base, tiles[i]);
     if (!map) throw IoError::malformed(tile_path(base.folder, tiles[i]), "is missing");
     tiles[i] = save(tiles[i].id, in_layout(std::move(*map), layout));
