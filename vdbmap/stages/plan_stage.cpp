@@ -10,6 +10,7 @@
 
 #include "vdbmap/core/error.h"
 #include "vdbmap/store/city_base.h"
+#include "vdbmap/store/city_writer.h"
 #include "vdbmap/store/source_hash.h"
 #include "vdbmap/store/source_points.h"
 
@@ -72,6 +73,18 @@ void choose_anchor_of(JobPlan& plan, const JobOptions& options) {
   }
 }
 
+// Before hours of work: whether the city can be written, and may become that of the job. Its writer leaves a new folder
+// as it was.
+void check_target(const std::filesystem::path& folder, const JobPlan& plan) {
+  const std::filesystem::path job = std::filesystem::absolute(folder).lexically_normal();
+  if (job == plan.city) throw std::invalid_argument(folder.string() + ": cannot be both the job and the city");
+  const CityWriter writer(plan.city);
+  if (!plan.adds && writer.num_epochs() > 1) {
+    throw std::invalid_argument(plan.city.string() +
+                                ": is a city of several epochs, choose another output or add to it");
+  }
+}
+
 std::size_t number_of_buckets(const std::vector<PlannedSource>& sources) {
   std::uint64_t num_bytes = 0;
   for (const PlannedSource& source : sources) num_bytes += source.num_bytes;
@@ -89,6 +102,8 @@ Job plan_job(const std::filesystem::path& folder, const std::vector<MapInput>& i
   plan.files = options.files;
   plan.save = options.save;
   plan.keep_epochs = options.keep_epochs;
+  if (plan.adds) open_city(plan.city);  // is no new folder
+  check_target(folder, plan);
   if (plan.adds) fit_to_city(open_city(plan.city), plan.files, plan.save);
   plan.city_state = city_state(plan.city);
   plan.sources = planned_sources(inputs);

@@ -23,8 +23,9 @@ struct JobOptions {
 
 /// Plans a job: of the inputs, names and sizes alone. Where no anchor is given and none is there, the first source by
 /// name is read for it, as build_city() does; sources of that same name are hashed, since their hashes decide which is
-/// first. Throws as build_city() does for options, a city that cannot be added to, and the first source; IoError where
-/// an input is missing or the folder cannot be written; std::invalid_argument where it holds another plan.
+/// first. Throws as build_city() does for options, a city that cannot be written or added to, and the first source;
+/// IoError where an input is missing or the folder cannot be written; std::invalid_argument where it holds another
+/// plan.
 Job plan_job(const std::filesystem::path& folder, const std::vector<MapInput>& inputs, const JobOptions& options);
 
 }  // namespace vdbmap

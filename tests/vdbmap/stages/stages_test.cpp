@@ -439,6 +439,28 @@ TEST_F(Stages, SourcesThatDoNotGoTogetherAreRefusedAsInABuild) {
   EXPECT_EQ(error_of([&] { run(job); }), "b.las: is in EPSG:25833, files before it are in EPSG:25832");
 }
 
+TEST_F(Stages, AnOutputThatCannotBeIsRefusedBeforeTheWork) {
+  const std::vector<MapInput> inputs = three_files();
+  JobOptions home = options();
+  home.city = folder_.path();
+  EXPECT_NE(error_of([&] { plan(inputs, home); }).find("is no city: it holds"), std::string::npos);
+  EXPECT_THROW(plan_job(folder_ / "city", inputs, options()), std::invalid_argument);
+  JobOptions adds = options();
+  adds.adds = true;
+  EXPECT_EQ(error_of([&] { plan(inputs, adds); }), "city: cannot open: No such file or directory");
+  EXPECT_FALSE(std::filesystem::exists(folder_ / "city"));
+  EXPECT_FALSE(std::filesystem::exists(folder_ / "job"));
+  for (const std::int32_t epoch : {1, 2}) {
+    CityBuildOptions build;
+    build.files.build.epoch = epoch;
+    if (epoch == 1) build_city(folder_ / "city", {inputs[0]}, build);
+    if (epoch == 2) add_to_city(folder_ / "city", {inputs[1]}, build);
+  }
+  EXPECT_THROW(plan(inputs), std::invalid_argument);
+  const CityLock busy(folder_ / "city");
+  EXPECT_NE(error_of([&] { plan(inputs, adds); }).find("is writing it"), std::string::npos);
+}
+
 TEST_F(Stages, APlanIsMadeOnce) {
   const std::vector<MapInput> inputs = three_files();
   const Job job = plan(inputs);
