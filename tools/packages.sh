@@ -15,7 +15,8 @@ test_packages=(libgmock-dev libgtest-dev libpng-dev)
 # For the page of the command web and what the tests compare ours with; other distributions of Node.js bring npm along.
 command -v npm > /dev/null || test_packages+=(nodejs npm)
 benchmark_packages=(jq libbenchmark-dev time)
-ci_packages=(blender chromium clang-format python3-numpy python3-openvdb python3-torch)
+# Slurm is for tools/cluster.sh.
+ci_packages=(blender chromium clang-format python3-numpy python3-openvdb python3-torch slurm-client slurmctld slurmd)
 # The compiler of the presets with sanitizers.
 sanitizer_packages=(clang libclang-rt-14-dev)
 
@@ -25,6 +26,19 @@ is_installed() {
 
 as_root() {
   if [[ $(id -u) == 0 ]]; then "$@"; else sudo "$@"; fi
+}
+
+# Installs packages whose daemons, of which we start our own, are not to be started now.
+install_without_starting() {
+  local policy=/usr/sbin/policy-rc.d is_ours=false status=0
+  if [[ ! -e $policy ]]; then
+    is_ours=true
+    printf '#!/bin/sh\nexit 101\n' | as_root tee "$policy" > /dev/null
+    as_root chmod +x "$policy"
+  fi
+  as_root env DEBIAN_FRONTEND=noninteractive apt-get install --yes --no-install-recommends "$@" || status=$?
+  if $is_ours; then as_root rm "$policy"; fi
+  return "$status"
 }
 
 # Installs those of the packages that are missing; touches nothing where all are there.
@@ -37,5 +51,5 @@ install_missing() {
 
   echo "installing: ${missing[*]}"
   as_root apt-get update
-  as_root env DEBIAN_FRONTEND=noninteractive apt-get install --yes --no-install-recommends "${missing[@]}"
+  install_without_starting "${missing[@]}"
 }

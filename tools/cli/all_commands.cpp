@@ -5,6 +5,7 @@ namespace vdbmap::cli {
 
 // A new command: its file defines one of these, and its row stands below.
 Command build_command();
+Command tile_command();
 Command info_command();
 Command query_command();
 Command check_command();
@@ -26,10 +27,10 @@ Command simulate_command();
 
 std::vector<Command> all_commands() {
   return {
-      build_command(),    info_command(),      query_command(),    check_command(),    export_command(),
-      import_command(),   merge_command(),     log_command(),      update_command(),   diff_command(),
-      odometry_command(), localize_command(),  evaluate_command(), render_command(),   segment_command(),
-      spaces_command(),   occupancy_command(), web_command(),      simulate_command(),
+      build_command(),   tile_command(),     info_command(),      query_command(),    check_command(),
+      export_command(),  import_command(),   merge_command(),     log_command(),      update_command(),
+      diff_command(),    odometry_command(), localize_command(),  evaluate_command(), render_command(),
+      segment_command(), spaces_command(),   occupancy_command(), web_command(),      simulate_command(),
   };
 }
 

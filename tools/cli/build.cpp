@@ -3,7 +3,6 @@
 #include <chrono>
 #include <cstdint>
 #include <filesystem>
-#include <limits>
 #include <optional>
 #include <stdexcept>
 #include <string>
@@ -13,33 +12,25 @@
 #include <spdlog/spdlog.h>
 
 #include "tools/cli/build_city.h"
-#include "tools/cli/build_inputs.h"
+#include "tools/cli/build_options.h"
 #include "tools/cli/build_report.h"
 #include "tools/cli/city_output.h"
-#include "tools/cli/class_options.h"
 #include "tools/cli/command.h"
 #include "tools/cli/date_option.h"
 #include "tools/cli/map_output.h"
 #include "tools/cli/number_list.h"
-#include "tools/cli/pose_frame.h"
 #include "tools/cli/posed_drive.h"
 #include "tools/cli/progress.h"
 #include "tools/cli/reading.h"
-#include "tools/cli/scan_selection.h"
 #include "tools/cli/survey_rays.h"
 #include "vdbmap/change/map_visibility.h"
 #include "vdbmap/core/error.h"
-#include "vdbmap/io/las/geodetic_codes.h"
 #include "vdbmap/io/map_from_files.h"
 #include "vdbmap/io/points/point_reader.h"
-#include "vdbmap/store/city_folder.h"
 #include "vdbmap/store/source_hash.h"
 
 namespace vdbmap::cli {
 namespace {
-
-constexpr int kMaxEpsg = 999'999;
-constexpr double kDefaultVoxelSize = 0.1;  // [m]
 
 // What is said of the rays by which the points were measured.
 struct RayOptions {
@@ -51,60 +42,14 @@ struct RayOptions {
 };
 
 struct BuildCommandOptions {
-  std::vector<std::filesystem::path> inputs;
-  std::optional<std::filesystem::path> poses;
-  PoseFrame pose_frame = PoseFrame::kUnknown;
-  ScanSelection selection;
-  std::optional<double> voxel_size;
-  std::vector<double> levels;
-  std::vector<double> anchor;
-  std::optional<int> epsg;
-  std::optional<std::int32_t> epoch;
+  MapBuildOptions points;
   std::string date;
-  ClassOptions classes;
-  std::optional<double> min_range;  // [m]
-  std::optional<double> max_range;  // [m]
   RayOptions rays;
-  ReadOptions read;
   MapOutput output;
   CityOutput city;
 
   bool makes_city() const { return city.into || is_city_output(output.file); }
 };
-
-void add_map_options(CLI::App& app, BuildCommandOptions& options) {
-  app.add_option(
-         "--voxel-size", options.voxel_size,
-         "Edge of the finest voxels [m]; without --levels, a level ten times as large is added where it divides "
-         "8 m")
-      ->type_name("S")
-      ->default_str("0.1");
-  add_number_list(app, "--levels", options.levels, 0, "S,S,...",
-                  "Edges of the voxels of all levels [m]: each divides 8 m and is a whole multiple of the one before")
-      ->default_str("0.1,1");
-  app.add_option("--epsg", options.epsg, "EPSG code of the coordinates (default: what LAS files say)")
-      ->check(CLI::Range(1, kMaxEpsg).description(""))
-      ->type_name("N");
-  add_number_list(app, "--anchor", options.anchor, 3, "X,Y,Z",
-                  "Origin of the map's local frame, multiples of 64 m (default: near the first point, or where that is "
-                  "a stray one near the middle of all)");
-  app.add_option("--epoch", options.epoch, "Number of the survey, stored as first and last epoch of every voxel")
-      ->check(CLI::Range(0, std::numeric_limits<std::int32_t>::max()).description(""))
-      ->type_name("N");
-  add_date(app, options.date, "the survey, which vdbmap log then tells");
-}
-
-void add_range_options(CLI::App& app, BuildCommandOptions& options, CLI::Option* poses) {
-  app.add_option("--min-range", options.min_range,
-                 "Leave out points nearer to the sensor [m], its carrier's for example")
-      ->check(CLI::Range(0.0, 1000.0).description(""))
-      ->type_name("R")
-      ->needs(poses);
-  app.add_option("--max-range", options.max_range, "Leave out points farther from the sensor [m]")
-      ->check(CLI::Range(0.0, 1e6).description(""))
-      ->type_name("R")
-      ->needs(poses);
-}
 
 void add_ray_options(CLI::App& app, BuildCommandOptions& options, CLI::Option* poses) {
   CLI::Option* trajectory =
@@ -123,82 +68,13 @@ void add_ray_options(CLI::App& app, BuildCommandOptions& options, CLI::Option* p
 }
 
 void add_options(CLI::App& app, BuildCommandOptions& options) {
-  app.add_option("INPUTS", options.inputs,
-                 "Point files, and folders of them: PLY, PCD, LAS, LAZ, KITTI .bin, XYZ/CSV, .pcap")
-      ->type_name("PATH")
-      ->required();
-  CLI::Option* poses = app.add_option("--poses", options.poses,
-                                      "A pose for each scan (KITTI or TUM); without, the points are in map coordinates")
-                           ->type_name("FILE");
-  add_range_options(app, options, poses);
+  CLI::Option* poses = add_map_build_options(app, options.points);
+  add_date(app, options.date, "the survey, which vdbmap log then tells");
   add_ray_options(app, options, poses);
-  add_pose_frame(app, options.pose_frame);
-  add_scan_selection(app, options.selection);
-  add_map_options(app, options);
-  add_class_options(app, options.classes);
-  add_read_options(app, options.read);
   add_map_output(app, options.output, /*may_be_city=*/true);
   CLI::Option* output = app.get_option("--output");
   output->required(false);
   add_city_output(app, options.city, output);
-}
-
-// With a voxel size alone: a level ten times as large beside it, unless it does not divide 8 m.
-std::vector<double> default_voxel_sizes(double voxel_size) {
-  BuildOptions both;
-  both.voxel_sizes = {voxel_size, 10 * voxel_size};
-  try {
-    both.check();
-    return both.voxel_sizes;
-  } catch (const std::invalid_argument&) {
-    return {voxel_size};
-  }
-}
-
-std::vector<double> chosen_voxel_sizes(const BuildCommandOptions& options) {
-  if (options.levels.empty()) return default_voxel_sizes(options.voxel_size.value_or(kDefaultVoxelSize));
-  if (options.voxel_size && *options.voxel_size != options.levels.front()) {
-    throw std::invalid_argument(
-        fmt::format("--voxel-size is {} but --levels begins with {}", *options.voxel_size, options.levels.front()));
-  }
-  return options.levels;
-}
-
-BuildOptions build_options(const BuildCommandOptions& options) {
-  BuildOptions build;
-  build.voxel_sizes = chosen_voxel_sizes(options);
-  if (!options.anchor.empty()) build.anchor = Eigen::Vector3d(options.anchor.data());
-  if (options.epsg && is_geodetic_epsg(*options.epsg)) {
-    throw std::invalid_argument(
-        fmt::format("--epsg {} is a system of degrees or from the earth's centre, a map needs metres and a z that "
-                    "points up: project "
-                    "the points first",
-                    *options.epsg));
-  }
-  build.epsg = options.epsg;
-  build.epoch = options.epoch;
-  build.check();
-  return build;
-}
-
-std::optional<RangeLimits> range_of(const BuildCommandOptions& options) {
-  if (!options.min_range && !options.max_range) return std::nullopt;
-  const RangeLimits range{options.min_range.value_or(0),
-                          options.max_range.value_or(std::numeric_limits<double>::infinity())};
-  if (range.min < range.max) return range;
-  throw std::invalid_argument(fmt::format("--min-range is {} but --max-range {}", range.min, range.max));
-}
-
-MapFromFilesOptions files_options(const BuildOptions& build_options, const BuildCommandOptions& command,
-                                  const CommonOptions& common) {
-  MapFromFilesOptions options;
-  options.build = build_options;
-  options.inputs.label_scheme = command.classes.scheme();
-  options.inputs.dropped_classes = command.classes.dropped;
-  options.inputs.read = command.read;
-  options.inputs.range = range_of(command);
-  options.inputs.reads_ahead = common.num_threads != 1;
-  return options;
 }
 
 MapFromFiles build(const std::vector<MapInput>& inputs, MapFromFilesOptions options, const CommonOptions& common) {
@@ -207,26 +83,12 @@ MapFromFiles build(const std::vector<MapInput>& inputs, MapFromFilesOptions opti
   return build_map_from_files(inputs, options);
 }
 
-std::vector<std::filesystem::path> label_files(const std::vector<MapInput>& inputs) {
-  std::vector<std::filesystem::path> files;
-  for (const MapInput& input : inputs) {
-    if (input.labels) files.push_back(*input.labels);
-  }
-  return files;
-}
-
 ReadingReport complete(ReadingReport reading, const InputNotes& notes, const ChosenInputs& chosen,
                        const BuildCommandOptions& options) {
   reading.add(notes.findings);
-  if (chosen.poses) reading.add(*options.poses, chosen.poses->poses.findings);
+  if (chosen.poses) reading.add(*options.points.poses, chosen.poses->poses.findings);
   reading.warn();
   return reading;
-}
-
-void warn_without_labels(const std::string& label_scheme, bool has_labels) {
-  if (!label_scheme.empty() && !has_labels) {
-    spdlog::warn("--label-scheme {}: the files hold no labels", label_scheme);
-  }
 }
 
 double seconds_since(std::chrono::steady_clock::time_point start) {
@@ -253,7 +115,7 @@ MapExtras extras_of_survey(const VoxelMap& map, const ChosenInputs& chosen, cons
 
 MapHistory history_of(const ChosenInputs& chosen, const BuildCommandOptions& options) {
   MapHistory history;
-  const std::int32_t epoch = options.epoch.value_or(0);
+  const std::int32_t epoch = options.points.epoch.value_or(0);
   history.epochs.push_back({epoch, options.date, {}});
   history.sources = identify_sources(chosen.inputs);
   for (MapSource& source : history.sources) source.epoch = epoch;
@@ -281,7 +143,7 @@ void run_with_rays_of_scans(const ChosenInputs& chosen, const std::vector<ScanPl
   const auto start = std::chrono::steady_clock::now();
   Progress progress("building from scans, then following rays", 2 * chosen.inputs.size(), common);
   PosedDrive drive(chosen.inputs, all,
-                   {options.read, files.inputs.range, options.classes, true, [&progress] { progress.advance(); }});
+                   {options.points.read, files.inputs.range, options.points.classes, true, [&progress] { progress.advance(); }});
   const MapFromFiles built = build_of_drive(drive, files, chosen);
   const MapExtras extras{find_visibility(built.map, [&](const auto& take) { drive.for_each(take); }),
                          history_of(chosen, options)};
@@ -296,7 +158,7 @@ void run_for_file(const ChosenInputs& chosen, const MapFromFilesOptions& files, 
   const auto start = std::chrono::steady_clock::now();
   const MapFromFiles built = build(chosen.inputs, files, common);
   warn_of(built.notes, built.map.frame.epsg);
-  warn_without_labels(options.classes.scheme_name, !built.map.finest().channels().labels.empty());
+  warn_without_labels(options.points.classes.scheme_name, !built.map.finest().channels().labels.empty());
   const ReadingReport reading = complete(listed, built.notes, chosen, options);
   MapExtras extras;
   if (options.rays.trajectory) extras = extras_of_survey(built.map, chosen, files.inputs, options.rays, common);
@@ -312,7 +174,7 @@ void run_for_city(const ChosenInputs& chosen, const MapFromFilesOptions& files, 
       build_city_of(chosen.inputs, files, options.output.save, options.output.file, options.city, common);
   const CityLayout& layout = built.manifest.layout;
   warn_of(built.notes, layout.frame.epsg);
-  warn_without_labels(options.classes.scheme_name, std::ranges::count(layout.channels, "label") > 0);
+  warn_without_labels(options.points.classes.scheme_name, std::ranges::count(layout.channels, "label") > 0);
   warn_not_counted(built);
   const ReadingReport reading = complete(listed, built.notes, chosen, options);
   const std::filesystem::path folder = options.city.into ? *options.city.into : options.output.file;
@@ -326,37 +188,29 @@ void check_outputs(const BuildCommandOptions& options, const std::vector<std::fi
   check_output(options.output.file, kMapKind, inputs);
 }
 
-// A city keeps its levels where the command says nothing of them; its anchor and its density cannot be others.
-BuildOptions checked_build_options(const BuildCommandOptions& options) {
-  BuildOptions build = build_options(options);
-  if (!options.city.into) return build;
-  if (!options.anchor.empty())
-    throw std::invalid_argument("--anchor cannot be given with --into: a city keeps its own");
-  const City city = open_city(city_folder(*options.city.into));
-  const float density = options.output.save.density;
-  if (density != SaveOptions().density && density != city.manifest.layout.density) {
-    throw std::invalid_argument(
-        fmt::format("--density is {}, but the city has {}", density, city.manifest.layout.density));
+std::vector<std::filesystem::path> label_files(const std::vector<MapInput>& inputs) {
+  std::vector<std::filesystem::path> files;
+  for (const MapInput& input : inputs) {
+    if (input.labels) files.push_back(*input.labels);
   }
-  if (!options.voxel_size && options.levels.empty()) build.voxel_sizes = city.manifest.layout.voxel_sizes;
-  return build;
+  return files;
 }
 
 ExitCode run(const BuildCommandOptions& options, const CommonOptions& common) {
-  const BuildOptions build_options = checked_build_options(options);
-  range_of(options);
+  const MapBuildOptions& points = options.points;
+  const std::optional<std::filesystem::path>& into = options.city.into;
+  const BuildOptions build =
+      into ? build_options_into(city_folder(*into), points, options.output.save.density) : build_options(points);
+  const MapFromFilesOptions input_options = files_options(build, points, common);
   ReadingReport listed;
-  const std::vector<std::filesystem::path> files = list_inputs(options.inputs, listed);
-  std::vector<std::filesystem::path> read_files = files;
-  if (options.poses) read_files.push_back(*options.poses);
-  if (options.classes.labels) read_files.push_back(*options.classes.labels);
+  const std::vector<std::filesystem::path> files = list_inputs(points.inputs, listed);
+  std::vector<std::filesystem::path> read_files = named_files(points);
+  read_files.insert(read_files.end(), files.begin(), files.end());
   if (options.rays.trajectory) read_files.push_back(*options.rays.trajectory);
   check_outputs(options, read_files);
-  const std::vector<ScanPlace> all = list_scans(files, options.read);
-  ChosenInputs chosen = choose_inputs(all, options.selection, options.poses, options.pose_frame);
-  if (options.classes.labels) add_label_files(chosen.inputs, *options.classes.labels);
+  const std::vector<ScanPlace> all = list_scans(files, points.read);
+  const ChosenInputs chosen = chosen_inputs(all, points);
   check_outputs(options, label_files(chosen.inputs));
-  const MapFromFilesOptions input_options = files_options(build_options, options, common);
   if (options.makes_city()) {
     if (options.rays.are_wanted() || !options.date.empty()) {
       throw std::invalid_argument("--trajectory, --visibility and --date are for maps in one file");

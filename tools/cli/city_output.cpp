@@ -28,20 +28,28 @@ std::filesystem::path city_folder(const std::filesystem::path& output) {
   return output.has_filename() ? output : output.parent_path();
 }
 
-void add_city_output(CLI::App& app, CityOutput& city, CLI::Option* output) {
+void add_memory(CLI::App& app, std::uint64_t& memory_bytes, const std::string& description) {
+  app.add_option("--memory", memory_bytes, description)
+      ->transform(CLI::AsSizeValue(false).description(""))
+      ->check(CLI::Validator(check_memory, ""))
+      ->type_name("BYTES");
+}
+
+void add_city_addition(CLI::App& app, CityOutput& city, CLI::Option* output) {
   CLI::Option* into =
       app.add_option("--into", city.into, "Add to this city; a source that is counted in it already is left out")
           ->type_name("FOLDER")
           ->excludes(output);
-  app.add_option("--memory", city.memory_bytes,
-                 "What building a city may take, as 500M or 2G: beyond, sums of points go through the disk, [2G]")
-      ->transform(CLI::AsSizeValue(false).description(""))
-      ->check(CLI::Validator(check_memory, ""))
-      ->type_name("BYTES");
   app.add_option("--keep-epochs", city.keep_epochs, "Keep only the latest N epochs of the city (default: all)")
       ->check(CLI::Range(std::size_t{1}, std::numeric_limits<std::size_t>::max() / 2).description(""))
       ->type_name("N")
       ->needs(into);
+}
+
+void add_city_output(CLI::App& app, CityOutput& city, CLI::Option* output) {
+  add_city_addition(app, city, output);
+  add_memory(app, city.memory_bytes,
+             "What building a city may take, as 500M or 2G: beyond, sums of points go through the disk, [2G]");
 }
 
 }  // namespace vdbmap::cli

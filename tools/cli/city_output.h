@@ -5,6 +5,7 @@
 #include <cstdint>
 #include <filesystem>
 #include <optional>
+#include <string>
 
 #include <CLI/App.hpp>
 
@@ -23,7 +24,13 @@ struct CityOutput {
   std::optional<std::size_t> keep_epochs;
 };
 
-/// Declares --into, --memory and --keep-epochs. Of --into and the option `output` one must be given.
+/// Declares --into and --keep-epochs.
+void add_city_addition(CLI::App& app, CityOutput& city, CLI::Option* output);
+
+/// Declares these and --memory. Of --into and the option `output` one must be given.
 void add_city_output(CLI::App& app, CityOutput& city, CLI::Option* output);
+
+/// Declares --memory, [bytes].
+void add_memory(CLI::App& app, std::uint64_t& memory_bytes, const std::string& description);
 
 }  // namespace vdbmap::cli

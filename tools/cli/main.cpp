@@ -28,10 +28,15 @@ std::string footer(const std::string& examples) {
 
 void add_command(CLI::App& app, const Command& command, CommonOptions& common) {
   CLI::App& subcommand = *app.add_subcommand(command.name, command.summary);
-  command.add_options(subcommand);
-  add_common_options(subcommand, common);
   subcommand.footer(footer(command.examples));
   subcommand.group("Commands");
+  if (command.subcommands.empty()) {
+    command.add_options(subcommand);
+    add_common_options(subcommand, common);
+    return;
+  }
+  subcommand.require_subcommand(1);
+  for (const Command& inner : command.subcommands) add_command(subcommand, inner, common);
 }
 
 const Command* find_command(const std::vector<Command>& commands, const std::string& name) {
@@ -40,11 +45,15 @@ const Command* find_command(const std::vector<Command>& commands, const std::str
 }
 
 // CLI11 only says that a subcommand is missing; a user who mistyped one wants to know which.
-void check_command_name(const std::vector<Command>& commands, int argc, char** argv) {
-  if (argc < 2) throw std::invalid_argument("no command given, see vdbmap --help");
+void check_command_name(const std::vector<Command>& commands, const std::string& before, int argc, char** argv) {
+  if (argc < 2) throw std::invalid_argument("no command given, see " + before + " --help");
   const std::string name = argv[1];
-  if (name.starts_with("-") || find_command(commands, name) != nullptr) return;
-  throw std::invalid_argument("no command '" + name + "', see vdbmap --help");
+  if (name.starts_with("-")) return;
+  const Command* command = find_command(commands, name);
+  if (!command) throw std::invalid_argument("no command '" + name + "', see " + before + " --help");
+  if (!command->subcommands.empty()) {
+    check_command_name(command->subcommands, before + " " + name, argc - 1, argv + 1);
+  }
 }
 
 std::string text_for(const CLI::App& app, const CLI::Success& help_or_version) {
@@ -56,7 +65,13 @@ std::string text_for(const CLI::App& app, const CLI::Success& help_or_version) {
 ExitCode run_chosen(const CLI::App& app, const std::vector<Command>& commands, const CommonOptions& common) {
   if (common.quiet) silence_log();
   const ThreadLimit limit(common.num_threads);
-  return find_command(commands, app.get_subcommands().front()->get_name())->run(common);
+  const CLI::App* chosen = app.get_subcommands().front();
+  const Command* command = find_command(commands, chosen->get_name());
+  while (!command->subcommands.empty()) {
+    chosen = chosen->get_subcommands().front();
+    command = find_command(command->subcommands, chosen->get_name());
+  }
+  return command->run(common);
 }
 
 ExitCode run_command_line(int argc, char** argv) {
@@ -71,7 +86,7 @@ ExitCode run_command_line(int argc, char** argv) {
   CommonOptions common;
   const std::vector<Command> commands = all_commands();
   for (const Command& command : commands) add_command(app, command, common);
-  check_command_name(commands, argc, argv);
+  check_command_name(commands, "vdbmap", argc, argv);
   try {
     app.parse(argc, argv);
   } catch (const CLI::Success& help_or_version) {

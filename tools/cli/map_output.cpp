@@ -25,16 +25,20 @@ std::string check_density(const std::string& text) {
 
 }  // namespace
 
+void add_density(CLI::App& app, SaveOptions& save) {
+  app.add_option("--density", save.density, "Density of the fog that renderers see [1/m]")
+      ->check(check_density)
+      ->type_name("D")
+      ->capture_default_str();
+}
+
 void add_map_output(CLI::App& app, MapOutput& output, bool may_be_city) {
   const std::string file = "Write the map to this .vdb file";
   app.add_option("-o,--output", output.file,
                  may_be_city ? file + " or, with a slash at its end, as a city into this folder" : file)
       ->type_name("FILE")
       ->required();
-  app.add_option("--density", output.save.density, "Density of the fog that renderers see [1/m]")
-      ->check(check_density)
-      ->type_name("D")
-      ->capture_default_str();
+  add_density(app, output.save);
 }
 
 void check_output(const std::filesystem::path& output, const OutputKind& kind,

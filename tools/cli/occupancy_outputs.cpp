@@ -22,7 +22,7 @@ namespace {
 
 using Json = nlohmann::ordered_json;
 
-std::string text_of(const Json& json) { return json.dump(1, ' ', false, Json::error_handler_t::replace) + "\n"; }
+std::string document_text(const Json& json) { return json.dump(1, ' ', false, Json::error_handler_t::replace) + "\n"; }
 
 // report.png, report_2.png, ...
 std::filesystem::path page_path(const std::filesystem::path& first, std::size_t number) {
@@ -79,8 +79,8 @@ void write_outputs(const OccupancyOutputs& outputs, const parking::OccupancyReco
   std::vector<std::pair<std::filesystem::path, std::string>> files;
   if (outputs.geojson) files.emplace_back(*outputs.geojson, parking::geojson_of(record, outputs.geo));
   if (outputs.csv) files.emplace_back(*outputs.csv, parking::csv_of(record, outputs.geo));
-  if (outputs.curbs) files.emplace_back(*outputs.curbs, text_of(parking::curb_data_of(record, city)));
-  if (outputs.fiware) files.emplace_back(*outputs.fiware, text_of(parking::fiware_of(record, city)));
+  if (outputs.curbs) files.emplace_back(*outputs.curbs, document_text(parking::curb_data_of(record, city)));
+  if (outputs.fiware) files.emplace_back(*outputs.fiware, document_text(parking::fiware_of(record, city)));
   std::vector<Image> pages;
   if (outputs.report) pages = parking::draw_report(record, map, later, ground);
   write_json(outputs.json, parking::json_of(record));

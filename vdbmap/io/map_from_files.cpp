@@ -15,6 +15,7 @@ MapFromFiles build_map_from_files(const std::vector<MapInput>& inputs, const Map
     }
     return builder.unreachable();
   });
+  check_any_point(result.notes);
   if (result.map.levels.empty()) result.map = builder.finish();
   result.map.label_scheme = result.notes.label_scheme;
   if (!result.map.frame.epsg) result.map.frame.epsg = result.notes.epsg_of_files;

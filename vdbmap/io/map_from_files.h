@@ -19,7 +19,8 @@ struct MapFromFiles {
   InputNotes notes;
 };
 
-/// The map of all points in the scans. Throws as read_inputs() does, and std::invalid_argument for bad options.
+/// The map of all points in the scans. Throws as read_inputs() and check_any_point() do, and
+/// std::invalid_argument for bad options.
 MapFromFiles build_map_from_files(const std::vector<MapInput>& inputs, const MapFromFilesOptions& options = {});
 
 }  // namespace vdbmap

@@ -89,40 +89,10 @@ ReadOptions read_options(const std::vector<MapInput>& inputs, ReadOptions option
   return options;
 }
 
-void note_epsg(InputNotes& notes, const std::filesystem::path& file, const std::optional<int>& epsg) {
-  if (!epsg) return;
-  if (notes.epsg_of_files.value_or(*epsg) != *epsg) {
-    throw IoError::malformed(file, "is in EPSG:" + std::to_string(*epsg) +
-                                       ", files before it are in EPSG:" + std::to_string(*notes.epsg_of_files));
-  }
-  notes.epsg_of_files = epsg;
-}
-
-// What the files say of their labels.
-class SchemeNotes {
- public:
-  void note(const std::filesystem::path& file, LabelScheme scheme) {
-    has_unknown_ |= scheme == LabelScheme::kUnknown;
-    if (scheme != LabelScheme::kUnknown && known_.value_or(scheme) != scheme) {
-      throw IoError::malformed(file, "has labels of " + std::string(text_of(scheme)) + ", files before it of " +
-                                         std::string(text_of(*known_)));
-    }
-    if (scheme != LabelScheme::kUnknown) known_ = scheme;
-  }
-
-  // One file that does not say whose numbers its labels are is enough for nobody to know.
-  LabelScheme of_all() const { return has_unknown_ ? LabelScheme::kUnknown : known_.value_or(LabelScheme::kUnknown); }
-
- private:
-  std::optional<LabelScheme> known_;
-  bool has_unknown_ = false;
-};
-
 void note(InputNotes& notes, const MapInput& input, const ReadResult& read) {
   notes.num_dropped += read.num_non_finite;
   for (const ReadFinding& finding : read.findings) notes.findings.push_back({input.scan.file, finding});
   if (read.metres_per_unit != 1.0) notes.foreign_units.push_back({input.scan.file, read.metres_per_unit});
-  if (!input.map_from_scan) note_epsg(notes, input.scan.file, read.epsg);
 }
 
 // What is left out of an input, piece by piece.
@@ -168,12 +138,40 @@ void note(InputNotes& notes, const MapInput& input, const UnreachablePoints& unr
 
 }  // namespace
 
+void InputAgreement::add_epsg(const std::filesystem::path& file, const std::optional<int>& epsg) {
+  if (!epsg) return;
+  if (epsg_.value_or(*epsg) != *epsg) {
+    throw IoError::malformed(
+        file, "is in EPSG:" + std::to_string(*epsg) + ", files before it are in EPSG:" + std::to_string(*epsg_));
+  }
+  epsg_ = epsg;
+}
+
+void InputAgreement::add_labels(const std::filesystem::path& file, LabelScheme scheme) {
+  if (scheme == LabelScheme::kUnknown) {
+    has_unknown_ = true;
+    return;
+  }
+  if (known_ != LabelScheme::kUnknown && known_ != scheme) {
+    throw IoError::malformed(
+        file, "has labels of " + std::string(text_of(scheme)) + ", files before it of " + std::string(text_of(known_)));
+  }
+  known_ = scheme;
+}
+
+void check_any_point(const InputNotes& notes) {
+  if (notes.num_points == 0) {
+    throw std::invalid_argument(notes.num_of_dropped_classes > 0 ? "all points of the scans are of classes not wanted"
+                                                                 : "no point of the scans is within the range");
+  }
+}
+
 Eigen::Isometry3d pose_of(const MapInput& input) { return input.map_from_scan.value_or(Eigen::Isometry3d::Identity()); }
 
 InputNotes read_inputs(const std::vector<MapInput>& inputs, const InputOptions& options, const TakePoints& take) {
   if (inputs.empty()) throw std::invalid_argument("no scans to build a map from");
   InputNotes notes;
-  SchemeNotes schemes;
+  InputAgreement agreement;
   LeftOut left_out;
   PieceReader reader(inputs, options, read_options(inputs, options.read));
   std::future<Piece> next = start_reading(reader, options);
@@ -185,7 +183,10 @@ InputNotes read_inputs(const std::vector<MapInput>& inputs, const InputOptions& 
     if (piece.is_first) {
       note(notes, input, piece.read);
       left_out = {};
-      if (!cloud.labels.empty()) schemes.note(input.scan.file, options.label_scheme.value_or(piece.read.label_scheme));
+      if (!input.map_from_scan) agreement.add_epsg(input.scan.file, piece.read.epsg);
+      if (!cloud.labels.empty()) {
+        agreement.add_labels(input.scan.file, options.label_scheme.value_or(piece.read.label_scheme));
+      }
     }
     notes.num_points += cloud.size();
     notes.num_out_of_range += piece.num_out_of_range;
@@ -198,8 +199,8 @@ InputNotes read_inputs(const std::vector<MapInput>& inputs, const InputOptions& 
     note(notes, input, left_out.unreachable, options.read.strict);
     options.on_scan_done();
   }
-  if (notes.num_points == 0) throw std::invalid_argument("no point of the scans is within the range");
-  notes.label_scheme = schemes.of_all();
+  notes.epsg_of_files = agreement.epsg();
+  notes.label_scheme = agreement.label_scheme();
   return notes;
 }
 

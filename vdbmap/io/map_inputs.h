@@ -11,6 +11,7 @@
 
 #include <Eigen/Geometry>
 
+#include "vdbmap/core/label_scheme.h"
 #include "vdbmap/core/range_limits.h"
 #include "vdbmap/core/unreachable_points.h"
 #include "vdbmap/io/scans/scan_sequence.h"
@@ -68,9 +69,32 @@ struct InputPoints {
 /// Takes points and says which of them are not reached.
 using TakePoints = std::function<UnreachablePoints(const InputPoints& points)>;
 
+/// What inputs say of their coordinates and labels, on which those of one map must agree.
+class InputAgreement {
+ public:
+  /// Throws IoError where the file, in map coordinates, is in another system than one before.
+  void add_epsg(const std::filesystem::path& file, const std::optional<int>& epsg);
+
+  /// Of a file with labels; throws IoError where they are of another scheme than those of one before.
+  void add_labels(const std::filesystem::path& file, LabelScheme scheme);
+
+  const std::optional<int>& epsg() const { return epsg_; }
+
+  /// One file that does not say whose numbers its labels are is enough for nobody to know.
+  LabelScheme label_scheme() const { return has_unknown_ ? LabelScheme::kUnknown : known_; }
+
+ private:
+  std::optional<int> epsg_;
+  LabelScheme known_ = LabelScheme::kUnknown;
+  bool has_unknown_ = false;
+};
+
 /// Reads inputs one after the other; at most two scans, or pieces of files, are in memory at once. Throws IoError
 /// naming the scan that cannot be read, of whose points half or more are not reached, or that has another EPSG code or
-/// label scheme than one before; and std::invalid_argument for no inputs and a range that leaves no point.
+/// label scheme than one before; and std::invalid_argument for no inputs.
 InputNotes read_inputs(const std::vector<MapInput>& inputs, const InputOptions& options, const TakePoints& take);
+
+/// Throws std::invalid_argument where the range left no point of all inputs.
+void check_any_point(const InputNotes& notes);
 
 }  // namespace vdbmap

@@ -10,6 +10,7 @@
 
 #include "vdbmap/core/error.h"
 #include "vdbmap/io/file/byte_reader.h"
+#include "vdbmap/store/content_hash.h"
 
 namespace vdbmap {
 namespace {
@@ -81,10 +82,16 @@ std::filesystem::path epoch_path(const std::filesystem::path& folder, std::int32
 std::filesystem::path tiles_path(const std::filesystem::path& folder) { return folder / "tiles"; }
 
 std::filesystem::path tile_path(const std::filesystem::path& folder, const CityTile& tile) {
-  return tiles_path(folder) / (tile_name(tile.id) + "." + tile.hash + ".vdb");
+  return tiles_path(folder) / tile_file_name(tile);
 }
 
 std::string tile_name(const TileId& tile) { return std::to_string(tile.x) + "_" + std::to_string(tile.y); }
+
+std::string tile_file_name(const CityTile& tile) { return tile_name(tile.id) + "." + tile.hash + ".vdb"; }
+
+std::string city_state(const std::filesystem::path& folder) {
+  return is_there(manifest_path(folder)) ? hash_of_file(manifest_path(folder)) : "";
+}
 
 bool is_city(const std::filesystem::path& path) {
   return is_folder(path) || (!is_there(path) && split_epoch(path).has_value());

@@ -34,6 +34,12 @@ std::filesystem::path tile_path(const std::filesystem::path& folder, const CityT
 /// Name of a tile's file without its hash: "3_-12".
 std::string tile_name(const TileId& tile);
 
+/// Name of a tile's file: "3_-12.HASH.vdb".
+std::string tile_file_name(const CityTile& tile);
+
+/// What tells the state of a city from others: the hash of its manifest; empty where there is no city.
+std::string city_state(const std::filesystem::path& folder);
+
 /// Whether a path names a folder, "city" or "city/", or an epoch of one, "city@1". Maps in one piece are files.
 bool is_city(const std::filesystem::path& path);
 

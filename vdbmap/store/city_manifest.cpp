@@ -8,6 +8,7 @@
 #include <nlohmann/json.hpp>
 
 #include "vdbmap/core/error.h"
+#include "vdbmap/store/json_field.h"
 
 namespace vdbmap {
 namespace {
@@ -49,90 +50,16 @@ void add_line(std::string& text, const char* key, const std::string& value) {
   text += std::string("  \"") + key + "\": " + value + ",\n";
 }
 
-// Reads values out of JSON; says where one is not as it should be.
-class Field {
- public:
-  Field(const Json& json, std::string name, const std::filesystem::path& path)
-      : json_(json), name_(std::move(name)), path_(path) {}
-
-  [[noreturn]] void fail(const std::string& reason) const { throw IoError::malformed(path_, name_ + " " + reason); }
-
-  Field at(const std::string& key) const {
-    if (!json_.is_object()) fail("is no object");
-    const auto found = json_.find(key);
-    if (found == json_.end()) throw IoError::malformed(path_, inner(key) + " is missing");
-    return {*found, inner(key), path_};
-  }
-
-  std::vector<Field> elements() const {
-    if (!json_.is_array()) fail("is no list");
-    std::vector<Field> fields;
-    for (std::size_t i = 0; i < json_.size(); ++i) {
-      fields.emplace_back(json_[i], name_ + "[" + std::to_string(i) + "]", path_);
-    }
-    return fields;
-  }
-
-  bool is_null() const { return json_.is_null(); }
-
-  std::string text() const {
-    if (!json_.is_string()) fail("is no text");
-    return json_.get<std::string>();
-  }
-
-  bool truth() const {
-    if (!json_.is_boolean()) fail("is neither true nor false");
-    return json_.get<bool>();
-  }
-
-  double number() const {
-    if (!json_.is_number()) fail("is no number");
-    return json_.get<double>();
-  }
-
-  std::uint64_t count() const {
-    if (!json_.is_number_unsigned()) fail("is no whole number from 0 on");
-    return json_.get<std::uint64_t>();
-  }
-
-  std::int32_t integer() const {
-    const std::int64_t value = json_.is_number_integer() ? json_.get<std::int64_t>() : 0;
-    if (!json_.is_number_integer() || value != static_cast<std::int32_t>(value)) fail("is no whole number of 32 bits");
-    return static_cast<std::int32_t>(value);
-  }
-
-  Eigen::Vector3d point() const {
-    const std::vector<Field> axes = elements();
-    if (axes.size() != 3) fail("has " + std::to_string(axes.size()) + " coordinates, expected 3");
-    return {axes[0].number(), axes[1].number(), axes[2].number()};
-  }
-
-  // A part of names of files: nothing but digits may come out of it.
-  std::string hash(std::size_t size) const {
-    const std::string digits = text();
-    const bool is_hash = digits.size() == size && digits.find_first_not_of("0123456789abcdef") == std::string::npos;
-    if (!is_hash) fail("is no hash of " + std::to_string(size) + " hexadecimal digits");
-    return digits;
-  }
-
- private:
-  std::string inner(const std::string& key) const { return name_.empty() ? key : name_ + "." + key; }
-
-  const Json& json_;
-  std::string name_;
-  const std::filesystem::path& path_;
-};
-
-MapFrame frame_of(const Field& field) {
+MapFrame frame_of(const JsonField& field) {
   MapFrame frame{field.at("anchor").point(), std::nullopt};
   if (!is_anchor(frame.anchor)) field.at("anchor").fail("is no point of whole multiples of 64 m");
   if (!field.at("epsg").is_null()) frame.epsg = field.at("epsg").integer();
   return frame;
 }
 
-std::vector<double> voxel_sizes_of(const Field& field) {
+std::vector<double> voxel_sizes_of(const JsonField& field) {
   std::vector<double> sizes;
-  for (const Field& element : field.elements()) {
+  for (const JsonField& element : field.elements()) {
     sizes.push_back(element.number());
     try {
       voxels_per_metre(sizes.back());
@@ -145,9 +72,9 @@ std::vector<double> voxel_sizes_of(const Field& field) {
   return sizes;
 }
 
-std::vector<std::string> channels_of(const Field& field) {
+std::vector<std::string> channels_of(const JsonField& field) {
   std::vector<std::string> given;
-  for (const Field& element : field.elements()) given.push_back(element.text());
+  for (const JsonField& element : field.elements()) given.push_back(element.text());
   std::vector<std::string> known;
   for_each_channel([&](const char* name, auto /*channel*/) {
     if (std::ranges::find(given, name) != given.end()) known.emplace_back(name);
@@ -156,7 +83,7 @@ std::vector<std::string> channels_of(const Field& field) {
   return known;
 }
 
-CityLayout layout_of(const Field& field) {
+CityLayout layout_of(const JsonField& field) {
   CityLayout layout{frame_of(field), voxel_sizes_of(field.at("voxel_sizes")), field.at("has_color").truth(),
                     channels_of(field.at("channels"))};
   const std::optional<LabelScheme> scheme = label_scheme_of(field.at("label_scheme").text());
@@ -167,13 +94,13 @@ CityLayout layout_of(const Field& field) {
   return layout;
 }
 
-CityTile tile_of(const Field& field, std::size_t num_levels) {
+CityTile tile_of(const JsonField& field, std::size_t num_levels) {
   CityTile tile;
   tile.id = {field.at("x").integer(), field.at("y").integer()};
   tile.hash = field.at("hash").hash(kTileHashSize);
   tile.num_bytes = field.at("bytes").count();
   tile.num_points = field.at("points").count();
-  for (const Field& count : field.at("voxels").elements()) tile.num_voxels.push_back(count.count());
+  for (const JsonField& count : field.at("voxels").elements()) tile.num_voxels.push_back(count.count());
   if (tile.num_voxels.size() != num_levels || std::ranges::count(tile.num_voxels, 0U) > 0) {
     field.at("voxels").fail("is no list of " + std::to_string(num_levels) + " numbers of voxels above 0");
   }
@@ -181,17 +108,9 @@ CityTile tile_of(const Field& field, std::size_t num_levels) {
   return tile;
 }
 
-MapSource source_of(const Field& field) {
+MapSource source_of(const JsonField& field) {
   return {field.at("name").text(), field.at("hash").hash(kSourceHashSize), field.at("points").count(),
           field.at("epoch").integer()};
-}
-
-void check_format(const Field& root) {
-  if (root.at("format").text() != kFormatName) root.at("format").fail("is not '" + std::string(kFormatName) + "'");
-  const std::int32_t version = root.at("version").integer();
-  if (version == kCityFormat) return;
-  root.at("version").fail("is " + std::to_string(version) + (version > kCityFormat ? ", newer than" : ", expected") +
-                          " the " + std::to_string(kCityFormat) + " that this program knows");
 }
 
 }  // namespace
@@ -220,21 +139,20 @@ std::string text_of(const CityManifest& manifest) {
 }
 
 CityManifest parse_city_manifest(std::string_view text, const std::filesystem::path& path) {
-  const Json json = Json::parse(text, nullptr, /*allow_exceptions=*/false);
-  if (!json.is_object()) throw IoError::malformed(path, "is damaged: it is no JSON object");
-  const Field root(json, "", path);
-  check_format(root);
+  const Json json = parse_json(text, path);
+  const JsonField root(json, "", path);
+  root.check_format(kFormatName, kCityFormat);
   CityManifest manifest;
   manifest.epoch = root.at("epoch").integer();
   if (manifest.epoch < 0) root.at("epoch").fail("is below 0");
   if (root.at("tile_size").number() != kTileSize) root.at("tile_size").fail("is not 64");
   manifest.layout = layout_of(root);
-  for (const Field& field : root.at("tiles").elements()) {
+  for (const JsonField& field : root.at("tiles").elements()) {
     manifest.tiles.push_back(tile_of(field, manifest.layout.voxel_sizes.size()));
     const std::size_t count = manifest.tiles.size();
     if (count > 1 && !(manifest.tiles[count - 2].id < manifest.tiles[count - 1].id)) field.fail("is out of order");
   }
-  for (const Field& field : root.at("sources").elements()) manifest.sources.push_back(source_of(field));
+  for (const JsonField& field : root.at("sources").elements()) manifest.sources.push_back(source_of(field));
   return manifest;
 }
 

@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <array>
 #include <cerrno>
+#include <cstdint>
 #include <set>
 #include <string>
 #include <string_view>
@@ -11,8 +12,11 @@
 #include <utility>
 #include <vector>
 
+#include <unistd.h>
+
 #include "vdbmap/core/error.h"
 #include "vdbmap/io/file/atomic_file.h"
+#include "vdbmap/io/file/byte_reader.h"
 #include "vdbmap/io/vdb/map_file.h"
 #include "vdbmap/io/vdb/vdb_checksum.h"
 
@@ -83,6 +87,17 @@ std::set<std::string> named_tiles(const Path& folder) {
   return names;
 }
 
+void copy_tile(const Path& from, const Path& to) {
+  constexpr std::uint64_t kChunk = std::uint64_t{1} << 20;
+  ByteReader source(from, ByteReader::Loading::kOnDemand);
+  AtomicFile copy(to);
+  while (source.remaining() > 0) {
+    copy.write(source.bytes(std::min(kChunk, source.remaining())));
+    source.forget_before(source.offset());
+  }
+  copy.commit();
+}
+
 // Keeps a manifest as that of its epoch.
 void keep_manifest(const Path& folder, const CityManifest& manifest) {
   create_folder(epochs_path(folder));
@@ -116,16 +131,40 @@ CityWriter::~CityWriter() {
   }
 }
 
-CityTile CityWriter::save_tile(const TileId& id, const VoxelMap& tile, float density) const {
-  const Path unnamed = tiles_path(folder_) / (tile_name(id) + ".vdb");
+void check_tile_file(const Path& path, const CityTile& tile) {
+  std::error_code error;
+  const std::uintmax_t size = std::filesystem::file_size(path, error);
+  if (error) throw IoError::system(path, "cannot open", error.value());
+  if (size == tile.num_bytes && stated_checksum(path) == tile.hash) return;
+  throw IoError::malformed(path, "is not the tile that its name says");
+}
+
+CityTile save_tile(const Path& tiles_folder, const TileId& id, const VoxelMap& tile, float density) {
+  const Path unnamed = tiles_folder / (tile_name(id) + ".vdb");
   save_map(unnamed, tile, {density});
   CityTile described = describe_tile(id, tile);
   described.hash = *stated_checksum(unnamed);
   described.num_bytes = std::filesystem::file_size(unnamed);
   // A file of that name is the same already, or was damaged.
-  const Path path = tile_path(folder_, described);
+  const Path path = tiles_folder / tile_file_name(described);
   if (::rename(unnamed.c_str(), path.c_str()) != 0) throw IoError::system(path, "cannot create", errno);
   return described;
+}
+
+CityTile CityWriter::save_tile(const TileId& id, const VoxelMap& tile, float density) const {
+  return vdbmap::save_tile(tiles_path(folder_), id, tile, density);
+}
+
+void CityWriter::adopt_tile(const CityTile& tile, const Path& city) const {
+  const Path from = tile_path(city, tile);
+  check_tile_file(from, tile);
+  const Path to = tile_path(folder_, tile);
+  const Path unnamed = tiles_path(folder_) / (tile_name(tile.id) + ".link");
+  ::unlink(unnamed.c_str());
+  if (::link(from.c_str(), unnamed.c_str()) != 0) return copy_tile(from, to);
+  // Where both are the same file already, this does nothing and leaves both names.
+  if (::rename(unnamed.c_str(), to.c_str()) != 0) throw IoError::system(to, "cannot create", errno);
+  ::unlink(unnamed.c_str());
 }
 
 void CityWriter::publish(const CityManifest& manifest, std::size_t keep_epochs) {

@@ -10,6 +10,14 @@
 
 namespace vdbmap {
 
+/// Saves a tile in a folder of tiles under the name of its content, and counts it. Several threads, but one process,
+/// may save tiles in it at a time.
+CityTile save_tile(const std::filesystem::path& tiles_folder, const TileId& id, const VoxelMap& tile, float density);
+
+/// Throws IoError, malformed, unless size and stated checksum of a file are those of a tile. That its content has this
+/// checksum is what `check` looks at.
+void check_tile_file(const std::filesystem::path& path, const CityTile& tile);
+
 /// Writes a city. What it is changes in one moment, when publish() renames the manifest: before, readers see the state
 /// before, whatever tiles were saved, and a process that ends at any moment leaves that state. Tiles that no manifest
 /// names are removed: those of a writer that ended too early by the next one.
@@ -35,6 +43,10 @@ class CityWriter {
 
   /// Saves a tile under the name of its content and counts it. Several threads may save tiles at a time.
   CityTile save_tile(const TileId& id, const VoxelMap& tile, float density) const;
+
+  /// Takes a tile that lies in another city: another name of the same file where the file system knows that, else a
+  /// copy. Throws IoError, malformed where it is not the file that `tile` says.
+  void adopt_tile(const CityTile& tile, const std::filesystem::path& city) const;
 
   /// Makes this the city, once all of its tiles are on disk. The manifest before is kept where it is of another epoch;
   /// of all epochs the latest `keep_epochs`, which is 1 or more.

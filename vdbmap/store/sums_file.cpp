@@ -156,16 +156,15 @@ void append_bytes(const std::filesystem::path& path, std::string_view bytes) {
 
 }  // namespace
 
-void append_sums(const std::filesystem::path& path, const VoxelBlocks& blocks) {
+std::string pack_sums(const VoxelBlocks& blocks) {
   std::string bytes;
   PackedWriter writer(bytes);
   for (const auto& [block, content] : blocks) put_block(writer, block, content);
-  append_bytes(path, bytes);
+  return bytes;
 }
 
-void add_sums_of_file(const std::filesystem::path& path, VoxelBlocks& blocks) {
-  ByteReader file(path);
-  PackedReader reader(file.bytes(file.size()), path);
+void add_packed_sums(std::string_view bytes, const std::filesystem::path& path, VoxelBlocks& blocks) {
+  PackedReader reader(bytes, path);
   while (!reader.is_at_end()) {
     const auto block = BlockKey{reader.get()};
     BlockContent added = get_block(reader, block);
@@ -173,6 +172,15 @@ void add_sums_of_file(const std::filesystem::path& path, VoxelBlocks& blocks) {
     content.sums = merge_blocks(std::move(content.sums), std::move(added.sums));
     content.votes = merge_votes(content.votes, added.votes);
   }
+}
+
+void append_sums(const std::filesystem::path& path, const VoxelBlocks& blocks) {
+  append_bytes(path, pack_sums(blocks));
+}
+
+void add_sums_of_file(const std::filesystem::path& path, VoxelBlocks& blocks) {
+  ByteReader file(path);
+  add_packed_sums(file.bytes(file.size()), path, blocks);
 }
 
 }  // namespace vdbmap

@@ -114,8 +114,9 @@ AtomicFolder::~AtomicFolder() {
 }
 
 void AtomicFolder::commit() {
-  const bool is_new = ::access(target_.c_str(), F_OK) != 0;
-  const bool is_done = is_new ? ::rename(temporary_.c_str(), target_.c_str()) == 0 : exchange(temporary_, target_);
+  // Only where there is none, or an empty one; another process may be putting one there.
+  const bool is_new = ::rename(temporary_.c_str(), target_.c_str()) == 0;
+  const bool is_done = is_new || ((errno == ENOTEMPTY || errno == EEXIST) && exchange(temporary_, target_));
   if (!is_done) throw IoError::system(target_, "cannot replace", errno);
   if (!is_new) remove_folder(temporary_.c_str());
   unfinished_folders.forget(temporary_.string());
