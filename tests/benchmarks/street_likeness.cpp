@@ -1,15 +1,19 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// How like a real street the simulated one is: the scans of a real HDL-64 with the classes of their points beside those
-// of a simulated one, as a Markdown table. Real scans: kitti00 in the folder of real data.
+// How like a real street simulated ones are: street_likeness [--ideal] lays the scans of a real HDL-64 with the classes
+// of their points beside those of simulated streets, as Markdown tables: medians, and distances between distributions.
+// Real scans: kitti00 in the folder of real data.
 #include <algorithm>
 #include <array>
 #include <cstdio>
+#include <exception>
 #include <filesystem>
 #include <optional>
+#include <span>
 #include <string>
 #include <string_view>
 #include <vector>
 
+#include "tests/benchmarks/likeness_distributions.h"
 #include "tests/support/folders.h"
 #include "tools/simulator/lidar.h"
 #include "tools/simulator/street.h"
@@ -22,13 +26,6 @@
 
 namespace vdbmap::benchmarks {
 namespace {
-
-enum Group { kGround, kFacade, kVegetation, kVehicle, kFence, kPole, kOther, kNumGroups };
-
-struct LabelledScan {
-  PointCloud cloud;
-  std::vector<Group> groups;
-};
 
 // SemanticKITTI's 19 classes as kitti00/labels numbers them.
 Group group_of_kitti(std::uint8_t label) {
@@ -57,6 +54,13 @@ Group group_of(simulator::SurfaceClass label) {
     case kTrunk:
       return Group::kVegetation;
     case kCar:
+    case kBus:
+    case kTruck:
+    case kOtherVehicle:
+    case kMovingCar:
+    case kMovingBus:
+    case kMovingTruck:
+    case kMovingOtherVehicle:
       return kVehicle;
     case kPole:
     case kTrafficSign:
@@ -80,15 +84,17 @@ std::vector<LabelledScan> real_scans(const std::filesystem::path& folder) {
   return scans;
 }
 
-// As many scans of a street as of the drive, 0.1 s apart, from its middle on.
-std::vector<LabelledScan> simulated_scans(std::uint64_t seed, std::size_t count) {
-  const simulator::Street street = simulator::make_street({.seed = seed, .num_epochs = 1});
+// As many scans of a street as of the drive, 0.1 s apart, from its middle on; a scanner with errors in a street that is
+// not ideal.
+std::vector<LabelledScan> simulated_scans(std::uint64_t seed, bool is_ideal, std::size_t count) {
+  const simulator::Street street = simulator::make_street({.seed = seed, .num_epochs = 1, .is_ideal = is_ideal});
   const simulator::Mesh mesh = street.mesh(0);
   const simulator::RayCaster caster(mesh);
+  const simulator::LidarModel lidar = is_ideal ? simulator::hdl64() : with_errors(simulator::hdl64(), seed);
   const simulator::Drive drive(street.layouts.front(), {.from = 70, .to = 110, .seed = seed});
   std::vector<LabelledScan> scans(count);
   parallel_for(count, [&](std::size_t i) {
-    const simulator::Survey survey = scan_turn({mesh, street.world.materials(), caster}, drive, simulator::hdl64(),
+    const simulator::Survey survey = scan_turn({mesh, street.world.materials(), caster}, drive, lidar,
                                                0.1 * static_cast<double>(i), simulator::hash(seed, i));
     scans[i].cloud = survey.cloud;
     for (const auto& truth : survey.truth) {
@@ -137,11 +143,9 @@ class Statistics {
   }
 
   void add_shares(const LabelledScan& scan) {
-    constexpr std::array<const char*, kNumGroups> kNames = {"ground", "facades", "vegetation",    "vehicles",
-                                                            "fences", "poles",   "other, unknown"};
     for (int group = 0; group < kNumGroups; ++group) {
       const auto count = std::ranges::count(scan.groups, static_cast<Group>(group));
-      put(std::string("share of ") + kNames[static_cast<std::size_t>(group)] + " [%]",
+      put(std::string("share of ") + name_of(static_cast<Group>(group)) + " [%]",
           100.0 * static_cast<double>(count) / static_cast<double>(scan.groups.size()));
     }
   }
@@ -149,7 +153,7 @@ class Statistics {
   void add_ranges(const PointCloud& cloud) {
     std::vector<double> ranges;
     for (const Eigen::Vector3d& point : cloud.positions) ranges.push_back(point.norm());
-    for (const int percent : {5, 25, 50, 75, 95}) {
+    for (const int percent : {5, 25, 50, 75, 95, 99}) {
       put("range, " + std::to_string(percent) + " % quantile [m]", quantile(ranges, percent / 100.0));
     }
   }
@@ -195,24 +199,68 @@ void print_table(const std::vector<std::string>& names, const std::vector<std::v
   }
 }
 
-int run() {
+double median_of(const Distribution& distribution) {
+  return distribution.samples.empty() ? 0 : distribution.samples[distribution.samples.size() / 2];
+}
+
+// Medians of the real drive's and of all streets' samples; distances to the real drive: of each street, then the median
+// over the streets, and that between two of them.
+void print_distances(const std::vector<std::string>& names, const std::vector<Distributions>& places) {
+  std::string header = "\n| distance between distributions | real median | simulated |", rule = "|---|---|---|";
+  for (std::size_t i = 1; i < names.size(); ++i) {
+    header += " " + names[i] + " |";
+    rule += "---|";
+  }
+  std::printf("%s median | between seeds |\n%s---|---|\n", header.c_str(), rule.c_str());
+  const std::span<const Distributions> streets = std::span(places).subspan(1);
+  for (std::size_t figure = 0; figure < places.front().size(); ++figure) {
+    std::vector<double> medians, to_real, between;
+    for (const Distributions& place : places) medians.push_back(median_of(place[figure]));
+    for (std::size_t i = 0; i < streets.size(); ++i) {
+      to_real.push_back(distance(places.front()[figure], streets[i][figure]));
+      for (std::size_t j = 0; j < i; ++j) between.push_back(distance(streets[i][figure], streets[j][figure]));
+    }
+    std::printf("| %s | %.4f | %.4f |", places.front()[figure].name.c_str(), medians.front(),
+                quantile({medians.begin() + 1, medians.end()}, 0.5));
+    for (const double value : to_real) std::printf(" %.3f |", value);
+    std::printf(" %.3f | %.3f |\n", quantile(to_real, 0.5), quantile(between, 0.5));
+  }
+}
+
+int run(bool is_ideal) {
   const auto data = test::real_data_folder();
   constexpr std::size_t kNumScans = 16;
   std::vector<std::string> names;
   std::vector<std::vector<Row>> columns;
-  if (data && std::filesystem::is_directory(*data / "kitti00")) {
-    names.emplace_back("KITTI 00");
-    columns.push_back(statistics_of(real_scans(*data / "kitti00")));
-  }
+  std::vector<Distributions> distributions;
+  const auto add = [&](const std::string& name, const std::vector<LabelledScan>& scans) {
+    names.push_back(name);
+    columns.push_back(statistics_of(scans));
+    distributions.push_back(distributions_of(scans));
+  };
+  const bool has_real = data && std::filesystem::is_directory(*data / "kitti00");
+  if (has_real) add("KITTI 00", real_scans(*data / "kitti00"));
   for (const std::uint64_t seed : {1, 2, 3, 4, 5}) {
-    names.push_back("seed " + std::to_string(seed));
-    columns.push_back(statistics_of(simulated_scans(seed, kNumScans)));
+    add("seed " + std::to_string(seed), simulated_scans(seed, is_ideal, kNumScans));
   }
   print_table(names, columns);
+  if (has_real) print_distances(names, distributions);
   return 0;
 }
 
 }  // namespace
 }  // namespace vdbmap::benchmarks
 
-int main() { return vdbmap::benchmarks::run(); }
+int main(int argc, char** argv) {
+  const bool is_ideal = argc == 2 && std::string_view(argv[1]) == "--ideal";
+  if (argc > 1 && !is_ideal) {
+    std::fprintf(stderr, "usage: street_likeness [--ideal]\n");
+    return 2;
+  }
+  try {
+    return vdbmap::benchmarks::run(is_ideal);
+  } catch (const std::exception& error) {
+    std::fprintf(stderr, "%s\n", error.what());
+    return 1;
+  }
+}

@@ -106,7 +106,8 @@ class LotPainter {
     const double choice = random_.uniform(0, 1) * 0.5 + 0.125 * static_cast<double>(lot_.house_type);
     const Eigen::Isometry3d frame = moved(border_frame_, from, 0);
     if (choice < 0.58) {
-      const Eigen::Vector3d size(to - from, random_.uniform(0.5, 0.9), random_.uniform(0.9, 2.0));
+      Eigen::Vector3d size(to - from, random_.uniform(0.5, 0.9), random_.uniform(0.9, 2.0));
+      if (!layout_.is_ideal && random_.chance(0.5)) size.z() = random_.uniform(0.4, 1.1);
       add_garden_hedge(object("hedge", frame, materials().hedge), size);
     } else if (choice < 0.72) {
       const bool is_wood = random_.chance(0.5);

@@ -4,6 +4,7 @@
 #include <numbers>
 
 #include "tools/simulator/furniture.h"
+#include "tools/simulator/things/plants.h"
 #include "tools/simulator/things/shrub.h"
 
 namespace vdbmap::simulator {
@@ -95,9 +96,21 @@ class PavementPainter {
     }
   }
 
+  // Shrubs and ground cover on the whole of an island, and now and then a tree.
+  void draw_planted_island(const Interval& island) {
+    const double middle = side_.kerb_offset() - side_.parking_width / 2;
+    const Eigen::Isometry3d place = layout_.place_on_side(side_, island.middle(), middle);
+    draw_planting({object("planting", place), world_, random_, island.length(), side_.parking_width - 0.2, false});
+    if (random_.chance(0.5)) add_tree(place);
+  }
+
   // A tree between parked cars, with shrubs at its foot.
   void draw_islands() {
     for (const Interval& island : side_.islands) {
+      if (!layout_.is_ideal && random_.chance(0.6)) {
+        draw_planted_island(island);
+        continue;
+      }
       const double distance = side_.kerb_offset() - 1.0;
       add_tree(layout_.place_on_side(side_, island.middle(), distance));
       for (const double aside : {-0.55, 0.55}) {

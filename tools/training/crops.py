@@ -5,11 +5,15 @@ import math
 import random
 
 import torch
+import torch.nn.functional as functional
 
 from . import classes, places, voxels
 
 LARGEST_CROP = 140_000  # [voxels]
-FEWEST = 100  # voxels of a crop
+FEWEST = 40  # voxels of a crop: what a scanner of 16 beams has of a place 30 m away
+WIDE = 0.2  # share of the crops that are most of one sparse scan, as those are labelled
+SPARSE = 32  # rings at most of a sparse scan
+RING_BIAS = 0.025  # [m] spread of the beams' ranges, at most
 RARE = (classes.POLE, classes.PERSON, classes.OTHER)
 
 
@@ -77,12 +81,13 @@ class Crops:
 
     def crop(self):
         """Voxels with features and labels, or None where there is too little or too much."""
-        radius = self.choose.uniform(8, 16) if self._chance(0.5) else self.choose.uniform(16, 26)
-        cloud = self._cut(radius)
+        is_wide = self._chance(WIDE)
+        radius = self.choose.uniform(*((26, 70) if is_wide else (8, 16) if self._chance(0.5) else (16, 26)))
+        cloud = self._cut(radius, is_wide)
         if cloud is None:
             return None
         points, labels = cloud
-        if self._chance(0.2):  # another scene over it
+        if not is_wide and self._chance(0.2):  # another scene over it
             other = self._cut(radius)
             if other is not None:
                 turned = other[0] @ rotation(self.choose.uniform(0, 2 * math.pi), self.device).T
@@ -106,12 +111,14 @@ class Crops:
     def _normal(self, *shape):
         return torch.randn(*shape, generator=self.numbers, device=self.device)
 
-    def _cut(self, radius):
+    def _cut(self, radius, is_wide=False):
         """Some scans of a place within a circle around (0, 0), ground near z = 0; None where there is next to nothing."""
         scene = self.choose.choice(self.scenes)
         scanners = [s for s in scene.scans if s != places.SURVEY]
         surveys = [s for s in scene.scans if s == places.SURVEY]
-        if surveys and (not scanners or self._chance(0.18)):
+        if is_wide and scanners:
+            parts = [self._sparse_scan(scene, self.choose.choice(scanners))]
+        elif surveys and (not scanners or self._chance(0.18)):
             parts = [(scene.scans[places.SURVEY], 1, self.choose.choice([1, 0.5, 0.2, 0.1]) * self.choose.uniform(0.7, 1), False)]
             if scanners and self._chance(0.4):
                 parts.append((self._some_scans(scene.scans[self.choose.choice(scanners)], 6), 1, 1, self._chance(0.5)))
@@ -127,6 +134,13 @@ class Crops:
             return None
         ground = torch.quantile(points[:: len(points) // 4096 + 1, 2], 0.05)
         return points - torch.stack([centre[0], centre[1], ground]), labels
+
+    def _sparse_scan(self, scene, sensor):
+        step = -(-scene.num_rings[sensor] // SPARSE)
+        if scene.num_rings[sensor] // step >= SPARSE and self._chance(0.5):
+            step *= 2
+        kept = 1 if self._chance(0.7) else self.choose.uniform(0.6, 1)
+        return [self.choose.choice(scene.scans[sensor])], step, kept, False
 
     def _some_scans(self, scans, most):
         draw = self.choose.random()
@@ -156,6 +170,7 @@ class Crops:
         points, labels = [], []
         height_noise, noise, turn = self.choose.uniform(0, 0.03), self.choose.uniform(0, 0.05), self.choose.uniform(0, 0.002)
         first_ring = self.choose.randrange(ring_step)
+        biases = self._normal(256) * self.choose.uniform(0, RING_BIAS) if self._chance(0.5) else None  # of each ring
         for scan in scans:
             part = scene.points_of(scan)
             own = scene.positions[part]
@@ -165,6 +180,9 @@ class Crops:
             if kept < 1:
                 is_in &= self._uniform(len(own)) < kept
             own = own[is_in]
+            if biases is not None:
+                away = own - scene.origins[scan]
+                own = own + functional.normalize(away) * biases[scene.rings[part][is_in].long()][:, None]
             if is_blurred:  # an error of the scan's pose
                 origin = scene.origins[scan]
                 shift = self._normal(3) * torch.tensor([noise, noise, height_noise], device=self.device)

@@ -20,7 +20,7 @@ QUARTERS = 0.3  # share of the places that are blocks with crossings, seen by th
 
 def random_lidar(choose):
     """A scanner with 16 to 128 beams."""
-    beams = choose.choice([16, 16, 32, 32, 40, 64, 64, 128])
+    beams = choose.choice([16, 16, 32, 32, 40, 64, 128])
     top, bottom = choose.uniform(1, 15), -choose.uniform(15, 31)
     bend = choose.uniform(0.7, 1.3)  # from 1 on denser below, before above
     return {
@@ -36,9 +36,11 @@ def random_lidar(choose):
 
 
 def scanners(choose):
+    """An HDL-64 of a real one's noise, and a VLP-16 or any other."""
     hdl64 = {"name": "hdl64", "model": "hdl64", "height": choose.uniform(1.55, 2.0), "tilt_deg": choose.gauss(0, 0.7)}
-    named = {"name": "random", "model": "vlp16", "height": choose.uniform(1.4, 2.3)}
-    return [hdl64, named if choose.random() < 0.25 else random_lidar(choose)]
+    hdl64["noise"] = choose.uniform(0.007, 0.025)
+    vlp16 = {"name": "random", "model": "vlp16", "height": choose.uniform(1.4, 2.3), "tilt_deg": choose.gauss(0, 0.7)}
+    return [hdl64, vlp16 if choose.random() < 0.45 else random_lidar(choose)]
 
 
 def make_street(command, folder, seed):

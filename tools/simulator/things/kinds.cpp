@@ -3,6 +3,7 @@
 
 #include <array>
 
+#include "tools/simulator/things/garden_things.h"
 #include "tools/simulator/things/people.h"
 #include "tools/simulator/things/plants.h"
 #include "tools/simulator/things/street_things.h"
@@ -20,7 +21,13 @@ std::span<const ThingKind> thing_kinds() {
       {"bushes", kVegetation, kInGarden, kYears, 7.0, 2.5, 2.0, draw_wild_bushes, kSheds},
       {"kerb bushes", kVegetation, kAtKerb, kYears, 1.2, 2.2, 1.3, draw_wild_bushes, kSheds},
       {"clipped shrub", kVegetation, kAtKerb, kYears, 0.8, 4.6, 1.4, draw_car_sized_shrub},
-      {"bed", kVegetation, kAtKerb, kYears, 1.2, 2.6, 1.0, draw_bed, kSheds},
+      {"bed", kVegetation, kAtKerb, kYears, 0.6, 2.6, 1.0, draw_bed, kSheds},
+      {"planting", kVegetation, kAtKerb, kYears, 1.6, 3.6, 1.4, draw_planting, kSheds},
+      {"ground cover", kVegetation, kInGarden, kYears, 3.0, 4.0, 1.8, draw_planting, kSheds},
+      {"low hedge", kVegetation, kInGarden, kYears, 3.0, 5.0, 0.7, draw_low_hedge},
+      {"walled hedge", kVegetation, kInGarden, kYears, 1.5, 6.0, 0.8, draw_walled_hedge},
+      {"bank", kTerrain, kInGarden, kYears, 1.2, 7.0, 2.4, draw_bank},
+      {"boulders", kOtherObject, kInGarden, kYears, 0.6, 2.5, 1.0, draw_boulders},
       {"ivy", kVegetation, kAtWall, kYears, 1.0, 3.0, 0.3, draw_ivy},
       {"tree pit", kTerrain, kAtKerb, kYears, 0.8, 2.0, 1.4, draw_tree_pit, kSheds},
       {"trunk", kTrunk, kAtKerb, kYears, 0.5, 1.5, 1.0, draw_thick_trunk},

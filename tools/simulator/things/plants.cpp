@@ -45,9 +45,10 @@ void draw_wild_bushes(const Site& site) {
     ShrubShape shape{{2 * radius, 2 * radius * site.random.uniform(0.7, 1.1), radius * site.random.uniform(1.1, 2.1)}};
     shape.exponent = site.random.uniform(1.6, 2.6);
     shape.leaf_size = site.random.uniform(0.06, 0.12);
-    shape.depth = site.random.uniform(0.15, 0.45);
-    shape.density = site.random.uniform(80, 200);
-    shape.wave = site.random.uniform(0.12, 0.35);
+    shape.is_dense = site.random.chance(0.5);
+    shape.depth = shape.is_dense ? site.random.uniform(0.04, 0.15) : site.random.uniform(0.12, 0.4);
+    shape.density = site.random.uniform(100, 280);
+    shape.wave = site.random.uniform(0.08, 0.3);
     draw_shrub(bush, shape, false);
   }
 }
@@ -56,10 +57,53 @@ void draw_car_sized_shrub(const Site& site) {
   ShrubShape shape{{site.random.uniform(3.2, 4.8), site.random.uniform(1.3, 1.9), site.random.uniform(1.1, 1.8)}};
   shape.exponent = site.random.uniform(2.5, 7);
   shape.leaf_size = site.random.uniform(0.05, 0.09);
-  shape.depth = site.random.uniform(0.05, 0.2);
-  shape.density = site.random.uniform(200, 350);
+  shape.is_dense = site.random.chance(0.8);
+  shape.depth = shape.is_dense ? site.random.uniform(0.01, 0.06) : site.random.uniform(0.05, 0.2);
+  shape.density = site.random.uniform(200, 450);
   shape.wave = site.random.uniform(0.02, 0.12);
   draw_shrub(site, shape, true);
+}
+
+// Ground cover and low shrubs, as they grow between parking spaces and before houses: often without a rim, or with a
+// low kerb, one plant beside the other.
+void draw_planting(const Site& site) {
+  const double half = site.length / 2, aside = site.width / 2;
+  if (site.random.chance(0.4)) {
+    const double rim = site.random.uniform(0.05, 0.2);
+    const Brush kerb = site.brush.with(site.standard().kerb);
+    for (const double side : {-1.0, 1.0}) {
+      add_box(kerb, {-half, side * aside - 0.06, -0.2}, {half, side * aside + 0.06, rim});
+      add_box(kerb, {side * half - 0.06, -aside, -0.2}, {side * half + 0.06, aside, rim});
+    }
+  }
+  add_box(site.brush.with(site.standard().soil), {-half, -aside, -0.2}, {half, aside, 0.03});
+  const bool is_evergreen = site.random.chance(0.5);
+  const std::size_t count = 1 + site.random.index(4);
+  const bool is_along = site.length >= site.width;
+  const double pitch = std::max(site.length, site.width) / static_cast<double>(count);
+  double height = site.random.uniform(0.15, 1.1);
+  for (std::size_t i = 0; i < count; ++i) {
+    if (site.random.chance(0.4)) height = site.random.uniform(0.12, 1.1);
+    const double middle = pitch * (static_cast<double>(i) + 0.5) - std::max(half, aside);
+    const double along = pitch * site.random.uniform(0.85, 1.15);
+    const double across = std::min(site.length, site.width) * site.random.uniform(0.75, 1.0);
+    ShrubShape shape{is_along ? Point(along, across, height) : Point(across, along, height)};
+    shape.exponent = site.random.uniform(2.2, 8);
+    shape.is_dense = site.random.chance(0.8);
+    shape.leaf_size = shape.is_dense ? site.random.uniform(0.03, 0.07) : site.random.uniform(0.04, 0.1);
+    shape.depth = shape.is_dense ? site.random.uniform(0.01, 0.04) : site.random.uniform(0.04, 0.15);
+    shape.density = site.random.uniform(120, 300);
+    shape.wave = site.random.uniform(0.02, 0.15);
+    Site plant = site;
+    plant.brush = site.brush.at(is_along ? Point(middle, 0, 0) : Point(0, middle, 0));
+    draw_shrub(plant, shape, is_evergreen);
+  }
+}
+
+// Knee to breast high, clipped, narrow: the border of a front garden.
+void draw_low_hedge(const Site& site) {
+  const Point size(site.length, site.random.uniform(0.3, 0.7), site.random.uniform(0.4, 1.2));
+  add_rough_hedge(leaves_of(site).at({-size.x() / 2, -size.y() / 2, 0}), site.standard().twigs, size, site.random);
 }
 
 void draw_bed(const Site& site) {
@@ -80,6 +124,7 @@ void draw_bed(const Site& site) {
   shape.depth = 0.2;
   shape.density = site.random.uniform(80, 200);
   shape.wave = 0.3;
+  shape.is_dense = site.random.chance(0.4);
   draw_shrub(site, shape, site.random.chance(0.5));
 }
 

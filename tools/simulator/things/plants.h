@@ -13,6 +13,8 @@ void draw_wild_bushes(const Site& site);
 void draw_car_sized_shrub(const Site& site);
 /// A raised bed with a kerb of stone or wood.
 void draw_bed(const Site& site);
+void draw_planting(const Site& site);
+void draw_low_hedge(const Site& site);
 /// On a wall in the plane y = 0 of the site.
 void draw_ivy(const Site& site);
 /// A bare or planted square of soil with a low guard.

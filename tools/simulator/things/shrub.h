@@ -16,9 +16,11 @@ struct ShrubShape {
   double wave = 0.05;       ///< share by which the surface swings in and out
   double base = 0;          ///< [m] height of its foot
   double leaf_share = 1;    ///< of the leaves that hang: few in winter
+  bool is_dense = false;    ///< no light goes through it: where few leaves stand any more, its inside is opaque
 };
 
-/// Adds leaves with the brush's material and `twigs` that rise from the foot through them.
+/// Adds leaves, and the inside of a dense plant, with the brush's material and `twigs` that rise from the foot through
+/// them.
 void add_shrub(const Brush& leaves, MaterialId twigs, const ShrubShape& shape, Random& random);
 
 /// A clipped hedge, as light enters real ones: x from 0 to the length, y from 0 to the depth, z up.
