@@ -3,9 +3,11 @@
 
 #include <algorithm>
 #include <cmath>
+#include <memory>
 
 #include <Eigen/Eigenvalues>
 
+#include "registration/map_window.h"
 #include "vdbmap/core/parallel.h"
 
 namespace vdbmap::registration {
@@ -22,7 +24,7 @@ using Candidates = std::vector<BatchCandidate>;
 // What hypotheses are aligned and compared with.
 struct Search {
   const CombinedScans& combined;
-  const VoxelMap& map;
+  const MapWindows& map;
   const VerdictOptions& verdict;
   FineOptions fine;
   Eigen::Vector3d center;  // [m] of the batch
@@ -36,19 +38,22 @@ void sort_by_agreement(Candidates& candidates) {
 BatchCandidate align_on_coarser_levels(const PoseHypothesis& hypothesis, const Search& search) {
   BatchCandidate candidate;
   candidate.coarse_guess = hypothesis.target_from_source;
-  candidate.coarse_guess.translation() += search.map.frame.anchor;
-  candidate.map_from_batch = align_coarsely(search.combined.sample, search.map, candidate.coarse_guess, search.fine);
+  const VoxelMap& map = search.map.overview();
+  candidate.coarse_guess.translation() += map.frame.anchor;
+  candidate.map_from_batch = align_coarsely(search.combined.sample, map, candidate.coarse_guess, search.fine);
   candidate.num_feature_inliers = hypothesis.num_inliers;
-  candidate.agreement = surface_agreement(search.combined.pieces, search.map, candidate.map_from_batch);
+  candidate.agreement = surface_agreement(search.combined.pieces, map, candidate.map_from_batch);
   return candidate;
 }
 
 void align_on_all_levels(BatchCandidate& candidate, const Search& search) {
-  const FineResult fine = align_sample(search.combined.sample, search.map, candidate.map_from_batch, search.fine);
+  const SampledScan& sample = search.combined.sample;
+  const std::shared_ptr<const VoxelMap> map = window_of(search.map, sample.fine, candidate.map_from_batch);
+  const FineResult fine = align_sample(sample, *map, candidate.map_from_batch, search.fine);
   candidate.map_from_batch = fine.map_from_scan;
   candidate.covariance = fine.covariance;
-  candidate.agreement = surface_agreement(search.combined.pieces, search.map, fine.map_from_scan);
-  candidate.evidence = weigh(search.combined.sample.fine, search.combined.rays, search.map, fine.map_from_scan);
+  candidate.agreement = surface_agreement(search.combined.pieces, *map, fine.map_from_scan);
+  candidate.evidence = weigh(sample.fine, search.combined.rays, *map, fine.map_from_scan);
 }
 
 Eigen::Vector3d center_of(std::span<const Eigen::Vector3d> points) {
@@ -128,7 +133,7 @@ Candidates align_contenders(Candidates places, const Search& search) {
 
 }  // namespace
 
-BatchResult find_batch(const CombinedScans& combined, const VoxelMap& map, const CoarseMap& coarse_map,
+BatchResult find_batch(const CombinedScans& combined, const MapWindows& map, const CoarseMap& coarse_map,
                        const CoarseOptions& coarse, const VerdictOptions& verdict, const FineOptions& fine) {
   verdict.check();
   fine.check();
@@ -140,7 +145,7 @@ BatchResult find_batch(const CombinedScans& combined, const VoxelMap& map, const
   return result;
 }
 
-BatchResult compare_hypotheses(const CombinedScans& combined, const VoxelMap& map,
+BatchResult compare_hypotheses(const CombinedScans& combined, const MapWindows& map,
                                std::span<const PoseHypothesis> hypotheses, const VerdictOptions& verdict,
                                const FineOptions& fine) {
   verdict.check();

@@ -8,6 +8,7 @@
 #include <openvdb/math/DDA.h>
 #include <openvdb/math/Ray.h>
 
+#include "registration/coarse/balanced_share.h"
 #include "registration/fine/plane_match.h"
 #include "registration/fine/plane_residual.h"
 #include "registration/fine/point_to_plane.h"
@@ -56,24 +57,6 @@ std::vector<Eigen::Vector3d> overlapping_points(std::span<const Eigen::Vector3d>
 std::size_t count_within(std::span<const double> distances, double limit) {
   return static_cast<std::size_t>(
       std::count_if(distances.begin(), distances.end(), [&](double distance) { return std::abs(distance) < limit; }));
-}
-
-// The share of what holds, each weighted by the leverage of its normal on the translation, n^T (sum n n^T)^-1 n: so
-// three directions of surfaces count alike, however many there are of each.
-double balanced_share(std::span<const Eigen::Vector3d> normals, const std::vector<bool>& holds) {
-  constexpr double kRegularization = 1e-3;  // of the mean: a direction without surfaces must not decide
-  Eigen::Matrix3d sum = Eigen::Matrix3d::Zero();
-  for (const Eigen::Vector3d& normal : normals) sum += normal * normal.transpose();
-  const double regularization = kRegularization * static_cast<double>(normals.size()) + 1e-12;
-  const Eigen::Matrix3d inverse = (sum + regularization * Eigen::Matrix3d::Identity()).inverse();
-  double total = 0;
-  double holding = 0;
-  for (std::size_t i = 0; i < normals.size(); ++i) {
-    const double leverage = normals[i].dot(inverse * normals[i]);
-    total += leverage;
-    if (holds[i]) holding += leverage;
-  }
-  return total > 0 ? holding / total : 0;
 }
 
 enum class PieceFit : std::uint8_t { kOutside, kDiffers, kAgrees };

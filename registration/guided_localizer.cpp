@@ -2,16 +2,18 @@
 #include "registration/guided_localizer.h"
 
 #include <cstdint>
+#include <memory>
 #include <utility>
 
 #include "registration/fine/scan_sample.h"
+#include "registration/map_window.h"
 #include "registration/odometry/deskew.h"
 #include "vdbmap/core/parallel.h"
 
 namespace vdbmap::registration {
 
-GuidedLocalizer::GuidedLocalizer(const VoxelMap& map, const FineOptions& options, const FoundCriteria& criteria)
-    : map_(&map), options_(options), criteria_(criteria) {
+GuidedLocalizer::GuidedLocalizer(MapWindows map, const FineOptions& options, const FoundCriteria& criteria)
+    : map_(std::move(map)), options_(options), criteria_(criteria) {
   options.check();
   criteria.check();
 }
@@ -52,9 +54,9 @@ LocalizedScan GuidedLocalizer::localize(const KeptScan& scan, const Vector6d& tw
   const bool is_deskewed = !scan.times.empty() && !twist.isZero(0);
   const std::vector<Eigen::Vector3d> deskewed =
       is_deskewed ? deskew_points(scan.positions, scan.times, {scan.first_time + scan.lead, twist}) : scan.positions;
-  LocalizedScan result =
-      localize_sample(sample_scan(deskewed, options.fine_spacing, options.coarse_spacing, options.range), *map_,
-                      map_from_middle_guess, options, criteria_);
+  const SampledScan sample = sample_scan(deskewed, options.fine_spacing, options.coarse_spacing, options.range);
+  const std::shared_ptr<const VoxelMap> map = window_of(map_, sample.fine, map_from_middle_guess);
+  LocalizedScan result = localize_sample(sample, *map, map_from_middle_guess, options, criteria_);
   result.time_problem = scan.result.time_problem;
   return result;
 }
@@ -153,7 +155,7 @@ std::vector<LocalizedScan> GuidedLocalizer::finish() {
   move_to_first_points();
   std::vector<LocalizedScan> results;
   for (KeptScan& scan : scans_) results.push_back(std::move(scan.result));
-  *this = GuidedLocalizer(*map_, options_, criteria_);
+  *this = GuidedLocalizer(map_, options_, criteria_);
   return results;
 }
 

@@ -13,18 +13,19 @@
 #include "registration/odometry/sensor_motion.h"
 #include "registration/pose_at_time.h"
 #include "vdbmap/core/point_cloud.h"
-#include "vdbmap/core/voxel_map.h"
+#include "vdbmap/store/map_windows.h"
 
 namespace vdbmap::registration {
 
 /// Localizes the scans of a sequence from first guesses: one for each, or one for the first, from which the motion is
 /// followed. Scans with time stamps are deskewed with the motion between the scans found before and after them, so that
 /// their poses are those of their first points, as the SequenceLocalizer's are; a scan that is the only one found is
-/// taken as if the sensor had stood still. Memory: some thousand points a scan.
+/// taken as if the sensor had stood still. Memory: some
+/// thousand points a scan; of a city the tiles around a few scans.
 class GuidedLocalizer {
  public:
-  /// Keeps a reference to the map. Throws std::invalid_argument for bad options.
-  explicit GuidedLocalizer(const VoxelMap& map, const FineOptions& options = {}, const FoundCriteria& criteria = {});
+  /// Keeps a reference to a map in memory. Throws std::invalid_argument for bad options.
+  explicit GuidedLocalizer(MapWindows map, const FineOptions& options = {}, const FoundCriteria& criteria = {});
 
   /// The next scan added is thought to be here, later ones where the motion leads to.
   void follow_from(const Eigen::Isometry3d& map_from_scan_guess);
@@ -69,7 +70,7 @@ class GuidedLocalizer {
   void take_deskewed(KeptScan& scan, LocalizedScan result) const;
   void move_to_first_points();
 
-  const VoxelMap* map_;
+  MapWindows map_;
   FineOptions options_;
   FoundCriteria criteria_;
   ScanClock clock_;

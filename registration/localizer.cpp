@@ -10,6 +10,7 @@
 #include "registration/batch_builder.h"
 #include "registration/carrying.h"
 #include "registration/joining.h"
+#include "registration/map_window.h"
 #include "registration/odometry_path.h"
 #include "registration/percent.h"
 #include "vdbmap/core/parallel.h"
@@ -37,13 +38,16 @@ std::string reason_not_found(const Evidence& evidence, const FoundCriteria& crit
 }  // namespace
 
 struct Localizer::State {
+  State(MapWindows map_to_search, LocalizerOptions how, CoarseMap features)
+      : map(std::move(map_to_search)), options(std::move(how)), coarse_map(std::move(features)) {}
+
   /// What is kept of a scan until the sequence ends, beside its pose on the path.
   struct KeptScan {
     SampledScan sample;
     ScanMotion motion;
   };
 
-  const VoxelMap* map;
+  MapWindows map;
   LocalizerOptions options;
   CoarseMap coarse_map;
   std::vector<KeptScan> scans;
@@ -68,13 +72,13 @@ struct Localizer::State {
 
 void Localizer::State::begin_batch() {
   batches.push_back({.first = scans.size(), .count = 0, .search = {}, .is_placed = false});
-  open_batch.emplace(map->coarsest().voxel_size(), options.fine.range);
+  open_batch.emplace(map.voxel_sizes().back(), options.fine.range);
 }
 
 void Localizer::State::close_batch() {
   if (!open_batch) return;
   SequenceBatch& batch = batches.back();
-  batch.search = find_batch(open_batch->combine(), *map, coarse_map, options.coarse, options.verdict, options.fine);
+  batch.search = find_batch(open_batch->combine(), map, coarse_map, options.coarse, options.verdict, options.fine);
   open_batch.reset();
 }
 
@@ -124,7 +128,8 @@ std::vector<double> Localizer::State::drift_in_batches() const {
 FineResult Localizer::State::align(std::size_t number, const Eigen::Isometry3d& map_from_scan_guess) const {
   FineOptions fine = options.fine;
   fine.search_headings = false;
-  return align_sample(scans[number].sample, *map, map_from_scan_guess, fine);
+  const SampledScan& sample = scans[number].sample;
+  return align_sample(sample, *window_of(map, sample.fine, map_from_scan_guess), map_from_scan_guess, fine);
 }
 
 std::vector<ScanPlace> Localizer::State::places_of_scans() const {
@@ -155,7 +160,8 @@ SequenceScan Localizer::State::judge(std::size_t number, const PoseEstimate& fir
   scan.unobservable = fine.unobservable;
   const SampledScan& sample = scans[number].sample;
   const Eigen::Isometry3d map_from_points = middle.map_from_scan * scans[number].motion.first_from_middle().inverse();
-  scan.evidence = weigh(sample.fine, rays_of(sample), *map, map_from_points);
+  const std::shared_ptr<const VoxelMap> window = window_of(map, sample.fine, map_from_points);
+  scan.evidence = weigh(sample.fine, rays_of(sample), *window, map_from_points);
   scan.reason = reason_not_found(scan.evidence, options.found);
   const double deviation = std::sqrt(first.covariance.bottomRightCorner<3, 3>().trace());
   if (scan.found() && deviation > kMaxDeviation) scan.reason = "neither the map nor odometry determine its place";
@@ -189,9 +195,10 @@ SequenceResult Localizer::State::locate_all() {
   return result;
 }
 
-std::string reason_not_searchable(const VoxelMap& map) {
+std::string reason_not_searchable(const MapWindows& map) {
   constexpr double kMinVoxelSize = 0.5;  // [m] features of finer levels see no more than a door
-  if (map.levels.size() >= 2 && map.coarsest().voxel_size() >= kMinVoxelSize) return "";
+  const std::vector<double> sizes = map.voxel_sizes();
+  if (sizes.size() >= 2 && sizes.back() >= kMinVoxelSize) return "";
   return "the map has no level of 1 m, which a search without a first guess needs";
 }
 
@@ -204,14 +211,13 @@ void LocalizerOptions::check() const {
   joint.check();
 }
 
-Localizer::Localizer(const VoxelMap& map, LocalizerOptions options) : state_(std::make_unique<State>()) {
+Localizer::Localizer(MapWindows map, LocalizerOptions options) {
   options.check();
   const std::string reason = reason_not_searchable(map);
   if (!reason.empty()) throw std::invalid_argument(reason);
   if (options.upright) options.coarse.consensus.max_tilt_deg = kUprightTilt_deg;
-  state_->map = &map;
-  state_->coarse_map = prepare_coarse_map(map.coarsest(), options.coarse);
-  state_->options = std::move(options);
+  CoarseMap coarse_map = prepare_coarse_map(map, options.coarse);
+  state_ = std::make_unique<State>(std::move(map), std::move(options), std::move(coarse_map));
 }
 
 Localizer::~Localizer() = default;

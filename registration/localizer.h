@@ -14,7 +14,7 @@
 #include "registration/fine/joint_refinement.h"
 #include "registration/localize.h"
 #include "registration/odometry/deskew.h"
-#include "vdbmap/core/voxel_map.h"
+#include "vdbmap/store/map_windows.h"
 
 namespace vdbmap::registration {
 
@@ -67,16 +67,16 @@ struct SequenceResult {
 
 /// Why a map cannot be searched without a first guess: it has no level of 0.5 m or more above a finer one. Empty where
 /// it can.
-std::string reason_not_searchable(const VoxelMap& map);
+std::string reason_not_searchable(const MapWindows& map);
 
 /// Localizes a sequence of scans with no first guess (Mortazavi 2023, section 2): scans are combined by odometry,
 /// batches are looked for in the whole map, then every scan is aligned by itself and all of them jointly. Memory: some
-/// thousand points a scan.
+/// thousand points a scan; of a city its coarser levels and the tiles around a few scans.
 class Localizer {
  public:
-  /// Keeps a reference to the map and makes its features. Throws std::invalid_argument for bad options and for a map
-  /// that is not searchable.
-  explicit Localizer(const VoxelMap& map, LocalizerOptions options = {});
+  /// Makes the features of the map; keeps a reference to one in memory. Throws std::invalid_argument for bad options
+  /// and for a map that is not searchable.
+  explicit Localizer(MapWindows map, LocalizerOptions options = {});
   ~Localizer();
   Localizer(Localizer&&) noexcept;
 

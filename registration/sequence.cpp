@@ -7,7 +7,7 @@
 
 namespace vdbmap::registration {
 
-SequenceLocalizer::SequenceLocalizer(const VoxelMap& map, const LocalizerOptions& options,
+SequenceLocalizer::SequenceLocalizer(const MapWindows& map, const LocalizerOptions& options,
                                      const OdometryOptions& odometry)
     : localizer_(map, options), odometry_options_(odometry), odometry_(odometry), stream_(new_stream()) {}
 

@@ -13,7 +13,7 @@
 #include "registration/odometry/odometry.h"
 #include "registration/odometry/scan_clock.h"
 #include "vdbmap/core/point_cloud.h"
-#include "vdbmap/core/voxel_map.h"
+#include "vdbmap/store/map_windows.h"
 
 namespace vdbmap::registration {
 
@@ -22,7 +22,7 @@ namespace vdbmap::registration {
 class SequenceLocalizer {
  public:
   /// As Localizer's constructor.
-  explicit SequenceLocalizer(const VoxelMap& map, const LocalizerOptions& options = {},
+  explicit SequenceLocalizer(const MapWindows& map, const LocalizerOptions& options = {},
                              const OdometryOptions& odometry = {});
   SequenceLocalizer(const SequenceLocalizer&) = delete;
   SequenceLocalizer& operator=(const SequenceLocalizer&) = delete;

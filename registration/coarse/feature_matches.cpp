@@ -68,6 +68,12 @@ std::vector<std::vector<Candidate>> nearest_features(const FpfhMatrix& queries, 
 
 }  // namespace
 
+void sort_best_first(std::vector<FeatureMatch>& matches) {
+  std::sort(matches.begin(), matches.end(), [](const FeatureMatch& a, const FeatureMatch& b) {
+    return std::tie(b.mutual, a.distance, a.source, a.target) < std::tie(a.mutual, b.distance, b.source, b.target);
+  });
+}
+
 std::vector<FeatureMatch> match_features(const FpfhMatrix& source, const Numbers& chosen_source,
                                          const FpfhMatrix& target, const Numbers& chosen_target, int num_nearest) {
   const FpfhMatrix sources = columns_of(source, chosen_source);
@@ -83,9 +89,7 @@ std::vector<FeatureMatch> match_features(const FpfhMatrix& source, const Numbers
           {chosen_source[i], chosen_target[candidate.number], std::sqrt(std::max(candidate.distance, 0.0f)), mutual});
     }
   }
-  std::sort(matches.begin(), matches.end(), [](const FeatureMatch& a, const FeatureMatch& b) {
-    return std::tie(b.mutual, a.distance, a.source, a.target) < std::tie(a.mutual, b.distance, b.source, b.target);
-  });
+  sort_best_first(matches);
   return matches;
 }
 

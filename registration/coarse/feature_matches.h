@@ -16,6 +16,9 @@ struct FeatureMatch {
   bool mutual = false;  ///< each is the other's nearest
 };
 
+/// Mutual ones first, then by distance; ties are broken by number.
+void sort_best_first(std::vector<FeatureMatch>& matches);
+
 /// For each of the chosen source features the `num_nearest` nearest of the chosen target features, the best first over
 /// all: mutual ones, then by distance. Ties are broken by number, so the order is the same for any number of threads.
 std::vector<FeatureMatch> match_features(const FpfhMatrix& source, const std::vector<std::uint32_t>& chosen_source,

@@ -18,6 +18,10 @@ struct SurfacePoints {
   std::size_t size() const { return positions.size(); }
 };
 
+/// Points with the normals that the voxels' own covariances give, on whichever side. The same bit for bit for a voxel
+/// in whatever level.
+SurfacePoints fitted_points(const VoxelLevel& level);
+
 /// Normals from the voxels' own covariances (Mortazavi 2023, section 2.3), each turned to the side on which most voxels
 /// within `radius` [m] lie: streets are seen from outside, so what stands before a wall tells its outside from its
 /// inside whatever way the axes point.

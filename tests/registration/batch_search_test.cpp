@@ -124,6 +124,18 @@ TEST(BatchSearch, OfTwinsInTheMapNeitherIsFoundFromFeatures) {
   expect_ambiguous(find_batch(batch(), map, prepare_coarse_map(map.coarsest())));
 }
 
+// However small a part is: the village is one, its twin is of another or of the same.
+TEST(BatchSearch, ALargeMapIsSearchedInPartsToTheSameEnd) {
+  CoarseOptions parts;
+  parts.max_whole = 100;
+  const CoarseMap village = prepare_coarse_map(village_map().coarsest(), parts);
+  ASSERT_FALSE(village.tiles.empty());
+  const BatchResult result = find_batch(batch(), village_map(), village, parts);
+  EXPECT_TRUE(result.found()) << result.reason;
+  EXPECT_LT(test::distance_between(result.candidates.at(0).map_from_batch, true_pose()).translation, 0.05);
+  expect_ambiguous(find_batch(batch(), map_of_twins(), prepare_coarse_map(map_of_twins().coarsest(), parts), parts));
+}
+
 TEST(BatchSearch, WithoutHypothesesNothingIsFound) {
   const BatchResult result = compare_hypotheses(batch(), village_map(), {});
   EXPECT_EQ(result.reason, "no features agree with the map");

@@ -6,11 +6,13 @@
 
 #include <gtest/gtest.h>
 
+#include "tests/support/folders.h"
 #include "tests/support/moving_scanner.h"
 #include "tests/support/pose_distance.h"
 #include "tests/support/synthetic_scene.h"
 #include "tests/support/threads.h"
 #include "vdbmap/core/map_builder.h"
+#include "vdbmap/store/city_of_map.h"
 
 namespace vdbmap::registration {
 namespace {
@@ -70,6 +72,26 @@ TEST(GuidedLocalizer, FindsFirstPointsFromGuessesOfEachScan) {
   const std::vector<LocalizedScan> found = localizer.finish();
   ASSERT_EQ(found.size(), turns().size());
   for (int i = 0; i < kTurns; ++i) expect_first_point(found[static_cast<std::size_t>(i)], i);
+}
+
+// A file and a city of the same map.
+TEST(GuidedLocalizer, FindsInACityWhatItFindsInOneMap) {
+  const test::TemporaryFolder folder;
+  save_city(folder / "city", guided_map());
+  const MapWindows city(
+      open_city(folder / "city"), [](const CityTile&) { return true; }, 0);
+  const auto find = [](const MapWindows& map) {
+    GuidedLocalizer localizer(map);
+    for (int i = 0; i < kTurns; ++i) localizer.add(turn(i), guess(i));
+    return localizer.finish();
+  };
+  const std::vector<LocalizedScan> in_map = find(guided_map());
+  const std::vector<LocalizedScan> in_city = find(city);
+  for (std::size_t i = 0; i < in_map.size(); ++i) {
+    EXPECT_TRUE(in_city[i].found()) << in_city[i].reason;
+    EXPECT_EQ(in_city[i].fine.map_from_scan.matrix(), in_map[i].fine.map_from_scan.matrix());
+    EXPECT_EQ(in_city[i].fine.covariance, in_map[i].fine.covariance);
+  }
 }
 
 TEST(GuidedLocalizer, FindsFirstPointsFromAGuessOfTheFirstScan) {

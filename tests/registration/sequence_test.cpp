@@ -8,11 +8,14 @@
 
 #include <gtest/gtest.h>
 
+#include "tests/support/folders.h"
 #include "tests/support/moving_scanner.h"
 #include "tests/support/pose_distance.h"
 #include "tests/support/synthetic_scene.h"
 #include "tests/support/threads.h"
 #include "vdbmap/core/map_builder.h"
+#include "vdbmap/core/map_tiles.h"
+#include "vdbmap/store/city_of_map.h"
 
 namespace vdbmap::registration {
 namespace {
@@ -50,7 +53,7 @@ void expect_found(const SequenceScan& scan, const Eigen::Isometry3d& truth) {
   EXPECT_LT(error.rotation_deg, 0.3);
 }
 
-SequenceResult localize(const std::vector<PointCloud>& scans, const VoxelMap& map = street_map(),
+SequenceResult localize(const std::vector<PointCloud>& scans, const MapWindows& map = street_map(),
                         const LocalizerOptions& options = {}) {
   SequenceLocalizer localizer(map, options);
   for (const PointCloud& scan : scans) localizer.add(scan);
@@ -64,6 +67,23 @@ TEST(Sequence, IsFoundWithNoFirstGuess) {
   ASSERT_EQ(result.batches.size(), 1u);
   EXPECT_TRUE(result.batches[0].search.found()) << result.batches[0].search.reason;
   for (std::size_t i = 0; i < 8; ++i) expect_found(result.scans[i], drive.map_from_scan[i]);
+}
+
+// A file and a city of the same map: the tiles of the village are loaded as they are looked at.
+TEST(Sequence, IsFoundInACityAsInOneMap) {
+  const test::TemporaryFolder folder;
+  save_city(folder / "city", street_map());
+  ASSERT_GT(tiles_of(street_map()).size(), 1u);
+  const MapWindows city(
+      open_city(folder / "city"), [](const CityTile&) { return true; }, 0);
+  const Drive drive(6);
+  const SequenceResult in_map = localize(drive.scans);
+  const SequenceResult in_city = localize(drive.scans, city);
+  for (std::size_t i = 0; i < drive.scans.size(); ++i) {
+    expect_found(in_city.scans[i], drive.map_from_scan[i]);
+    EXPECT_EQ(in_city.scans[i].map_from_scan.matrix(), in_map.scans[i].map_from_scan.matrix());
+    EXPECT_EQ(in_city.scans[i].covariance, in_map.scans[i].covariance);
+  }
 }
 
 // At 8 m/s over a road that lifts it by 5 cm, so fast that the motion since the scan before says little of that within

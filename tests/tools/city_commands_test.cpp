@@ -191,6 +191,12 @@ TEST_F(CityCommand, ScansAreFoundInItAsInTheFile) {
         vdbmap({"localize", path(map), folder, "--initial", path("poses.txt"), "-o", path(map + ".txt")}).exit_code, 0);
   }
   expect_same_bytes("city.txt", "a.vdb.txt");
+  for (const std::string map : {"a.vdb", "city"}) {
+    EXPECT_EQ(vdbmap({"localize", path(map), folder, "-o", path(map + ".found.txt")}).exit_code, 0);
+  }
+  expect_same_bytes("city.found.txt", "a.vdb.found.txt");
+  EXPECT_TRUE(std::filesystem::exists(path("city/cache")));
+  EXPECT_EQ(vdbmap({"check", city()}).exit_code, 0);
   expect_error(vdbmap({"localize", city(), folder, "--near", "5000,5000,50", "-o", path("none.txt")}),
                ExitCode::kBadInput, "has no voxels where the scans are looked for");
   expect_error(vdbmap({"localize", path("a.vdb"), folder, "--near", "0,0,50", "-o", path("none.txt")}),

@@ -129,7 +129,7 @@ LocalizeReport localize(const std::vector<ScanPlace>& scans, const LocalizeComma
   if (!options.near.empty() && !is_city(options.map)) throw std::invalid_argument("--near needs a city, not a file");
   const SearchArea area{options.near, options.initial ? std::optional(given->poses) : std::nullopt,
                         options.localizer.fine.range.max};
-  const VoxelMap map = load_search_area(options.map, area);
+  const MapWindows map = open_search_area(options.map, area);
   const std::string reason = options.initial ? "" : registration::reason_not_searchable(map);
   if (!reason.empty()) throw IoError::malformed(options.map, reason);
   const ChosenScans chosen{scans, options.selection.every - 1};

@@ -11,7 +11,7 @@
 #include "vdbmap/core/error.h"
 
 namespace vdbmap::cli {
-LocalizeReport localize_from_guesses(const ChosenScans& scans, const VoxelMap& map, const Trajectory& guesses,
+LocalizeReport localize_from_guesses(const ChosenScans& scans, const MapWindows& map, const Trajectory& guesses,
                                      const registration::FineOptions& fine, const registration::FoundCriteria& criteria,
                                      const ReadOptions& read, const CommonOptions& common) {
   registration::GuidedLocalizer localizer(map, fine, criteria);
@@ -38,7 +38,7 @@ LocalizeReport localize_from_guesses(const ChosenScans& scans, const VoxelMap& m
   return report;
 }
 
-LocalizeReport localize_without_guess(const ChosenScans& scans, const VoxelMap& map,
+LocalizeReport localize_without_guess(const ChosenScans& scans, const MapWindows& map,
                                       const std::optional<Trajectory>& odometry,
                                       const registration::LocalizerOptions& options, const ReadOptions& read,
                                       const CommonOptions& common) {

@@ -9,7 +9,7 @@
 #include "registration/localizer.h"
 #include "tools/cli/common_options.h"
 #include "tools/cli/localize_report.h"
-#include "vdbmap/core/voxel_map.h"
+#include "vdbmap/store/map_windows.h"
 #include "vdbmap/io/poses/trajectory_file.h"
 #include "vdbmap/io/scans/scan_sequence.h"
 
@@ -22,12 +22,12 @@ struct ChosenScans {
 };
 
 /// Each scan from a guess of its own, or, where there is one guess only, from the motion of those before.
-LocalizeReport localize_from_guesses(const ChosenScans& scans, const VoxelMap& map, const Trajectory& guesses,
+LocalizeReport localize_from_guesses(const ChosenScans& scans, const MapWindows& map, const Trajectory& guesses,
                                      const registration::FineOptions& fine, const registration::FoundCriteria& criteria,
                                      const ReadOptions& read, const CommonOptions& common);
 
 /// The whole sequence without a first guess; with the poses of an odometry made before, or our own.
-LocalizeReport localize_without_guess(const ChosenScans& scans, const VoxelMap& map,
+LocalizeReport localize_without_guess(const ChosenScans& scans, const MapWindows& map,
                                       const std::optional<Trajectory>& odometry,
                                       const registration::LocalizerOptions& options, const ReadOptions& read,
                                       const CommonOptions& common);

@@ -27,7 +27,8 @@
 #include "vdbmap/io/points/point_reader.h"
 #include "vdbmap/io/poses/trajectory_file.h"
 #include "vdbmap/io/vdb/diff_file.h"
-#include "vdbmap/store/city_window.h"
+#include "vdbmap/io/vdb/map_file.h"
+#include "vdbmap/render/city_picture.h"
 
 namespace vdbmap::cli {
 namespace {
@@ -166,8 +167,35 @@ std::optional<MapDiff> read_diff(const RenderCommandOptions& options, RenderOver
   return diff;
 }
 
-void check_not_empty(const VoxelMap& map, const std::filesystem::path& path) {
-  if (map.levels.empty() || map.finest().size() == 0) throw IoError::malformed(path, "holds no voxels to draw");
+struct Picture {
+  RenderResult result;
+  std::uint64_t num_voxels;  // of the map's finest level
+  double seconds;            // of a city with what is loaded on the way
+};
+
+template <typename Render>
+Picture timed(std::uint64_t num_voxels, const Render& render) {
+  const auto start = std::chrono::steady_clock::now();
+  RenderResult result = render();
+  return {std::move(result), num_voxels,
+          std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count()};
+}
+
+void check_not_empty(std::uint64_t num_voxels, const std::filesystem::path& path) {
+  if (num_voxels == 0) throw IoError::malformed(path, "holds no voxels to draw");
+}
+
+Picture draw(const RenderCommandOptions& options, const RenderOverlays& overlays) {
+  if (is_city(options.map)) {
+    City city = open_city(options.map);
+    const std::uint64_t count = city.manifest.tiles.empty() ? 0 : num_voxels(city.manifest).front();
+    check_not_empty(count, options.map);
+    return timed(count, [&] { return render_city(city, render_options(options), overlays); });
+  }
+  const VoxelMap map = load_map(options.map);
+  const std::uint64_t count = map.levels.empty() ? 0 : map.finest().size();
+  check_not_empty(count, options.map);
+  return timed(count, [&] { return render(map, render_options(options), overlays); });
 }
 
 ExitCode run(const RenderCommandOptions& options, const CommonOptions& common) {
@@ -175,12 +203,8 @@ ExitCode run(const RenderCommandOptions& options, const CommonOptions& common) {
   RenderOverlays overlays = read_overlays(options);
   const std::optional<MapDiff> diff = read_diff(options, overlays);
   if (diff) overlays.diff = &*diff;
-  const VoxelMap map = load_map_or_city(options.map);
-  check_not_empty(map, options.map);
-
-  const auto start = std::chrono::steady_clock::now();
-  const RenderResult result = render(map, render_options(options), overlays);
-  const std::chrono::duration<double> duration = std::chrono::steady_clock::now() - start;
+  const Picture picture = draw(options, overlays);
+  const RenderResult& result = picture.result;
   if (result.is_camera_in_voxel)
     spdlog::warn("the camera is inside of a voxel: the picture shows what is seen from there");
   write_picture(options.output, result.image);
@@ -189,12 +213,12 @@ ExitCode run(const RenderCommandOptions& options, const CommonOptions& common) {
     print_json({{"output", options.output.string()},
                 {"width", result.image.width()},
                 {"height", result.image.height()},
-                {"voxels", map.finest().size()},
+                {"voxels", picture.num_voxels},
                 {"camera_in_voxel", result.is_camera_in_voxel},
-                {"seconds", duration.count()}});
+                {"seconds", picture.seconds}});
   } else {
     print_result(fmt::format("{}: {} x {} pixels, drawn in {:.2f} s\n", options.output.string(), result.image.width(),
-                             result.image.height(), duration.count()));
+                             result.image.height(), picture.seconds));
   }
   return ExitCode::kDone;
 }

@@ -2,9 +2,10 @@
 #include "tools/cli/search_area.h"
 
 #include <algorithm>
+#include <utility>
 
 #include "vdbmap/core/error.h"
-#include "vdbmap/store/city_window.h"
+#include "vdbmap/io/vdb/map_file.h"
 
 namespace vdbmap::cli {
 namespace {
@@ -31,15 +32,17 @@ std::vector<Circle> circles_of(const SearchArea& area) {
 
 }  // namespace
 
-VoxelMap load_search_area(const std::filesystem::path& map, const SearchArea& area) {
+MapWindows open_search_area(const std::filesystem::path& map, const SearchArea& area) {
+  if (!is_city(map)) return load_map(map);
   const std::vector<Circle> circles = circles_of(area);
-  if (!is_city(map) || circles.empty()) return load_map_or_city(map);
+  const auto is_in_reach = [&](const CityTile& tile) {
+    return circles.empty() || std::ranges::any_of(circles, [&](const Circle& circle) { return touches(tile, circle); });
+  };
   City city = open_city(map);
-  VoxelMap window = load_window(city, [&](const CityTile& tile) {
-    return std::ranges::any_of(circles, [&](const Circle& circle) { return touches(tile, circle); });
-  });
-  if (window.finest().size() == 0) throw IoError::malformed(map, "has no voxels where the scans are looked for");
-  return window;
+  if (std::ranges::none_of(city.manifest.tiles, is_in_reach)) {
+    throw IoError::malformed(map, "has no voxels where the scans are looked for");
+  }
+  return MapWindows(std::move(city), is_in_reach);
 }
 
 }  // namespace vdbmap::cli

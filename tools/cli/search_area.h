@@ -5,8 +5,8 @@
 #include <optional>
 #include <vector>
 
-#include "vdbmap/core/voxel_map.h"
 #include "vdbmap/io/poses/trajectory_file.h"
+#include "vdbmap/store/map_windows.h"
 
 namespace vdbmap::cli {
 
@@ -17,9 +17,9 @@ struct SearchArea {
   double reach = 0;                   ///< [m] of the sensor
 };
 
-/// The map in one file, or of a city the tiles in reach: those that a scan near the place, or from one of the guesses,
-/// can see. All of it without a place, and where a single guess says only where the scans begin. Throws IoError, also
-/// where no tile is in reach.
-VoxelMap load_search_area(const std::filesystem::path& map, const SearchArea& area);
+/// The map in one file, or of a city the tiles in reach, to be loaded where they are looked at: those that a scan near
+/// the place, or from one of the guesses, can see. All of it without a place, and where a single guess says only where
+/// the scans begin. Throws IoError, also where no tile is in reach.
+MapWindows open_search_area(const std::filesystem::path& map, const SearchArea& area);
 
 }  // namespace vdbmap::cli

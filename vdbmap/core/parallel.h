@@ -9,6 +9,7 @@
 #include <tbb/global_control.h>
 #include <tbb/parallel_for.h>
 #include <tbb/parallel_sort.h>
+#include <tbb/task_arena.h>
 
 namespace vdbmap {
 
@@ -42,6 +43,13 @@ class PerThread {
 template <typename Value, typename Less>
 void parallel_sort(std::vector<Value>& values, const Less& less) {
   tbb::parallel_sort(values.begin(), values.end(), less);
+}
+
+/// Returns body(), which may work on all threads; this one takes up no other work while it waits for them. For bodies
+/// that hold a lock: other work might wait for it.
+template <typename Body>
+auto isolated(const Body& body) {
+  return tbb::this_task_arena::isolate(body);
 }
 
 /// How many threads may work in this process.

@@ -2,6 +2,7 @@
 #include "vdbmap/render/camera.h"
 
 #include <cmath>
+#include <limits>
 #include <numbers>
 #include <stdexcept>
 #include <string>
@@ -44,6 +45,24 @@ Ray Camera::ray_through(const Eigen::Vector2d& pixel) const {
     return {map_from_camera_.translation(), map_from_camera_.linear() * Eigen::Vector3d(x, y, 1).normalized()};
   }
   return {map_from_camera_ * Eigen::Vector3d(x, y, 0), map_from_camera_.linear().col(2)};
+}
+
+// All corners of a box that is not seen lie beyond one of the planes around the picture, or behind the camera.
+bool Camera::may_see(const Eigen::AlignedBox3d& box) const {
+  const Eigen::Array2d half = Eigen::Array2d(size_.width, size_.height) * pixel_width_ / 2;
+  Eigen::Array<double, 5, 1> nearest = Eigen::Array<double, 5, 1>::Constant(std::numeric_limits<double>::infinity());
+  for (int i = 0; i < 8; ++i) {
+    const Eigen::Vector3d corner = box.corner(static_cast<Eigen::AlignedBox3d::CornerType>(i));
+    const Eigen::Vector3d in_camera = map_from_camera_.linear().transpose() * (corner - map_from_camera_.translation());
+    const double scale = is_perspective_ ? in_camera.z() : 1;
+    const double width = half.x() * scale;
+    const double height = half.y() * scale;
+    Eigen::Array<double, 5, 1> beyond;
+    beyond << in_camera.x() - width, -in_camera.x() - width, in_camera.y() - height, -in_camera.y() - height,
+        is_perspective_ ? -in_camera.z() : -1;
+    nearest = nearest.min(beyond);
+  }
+  return (nearest <= 0).all();
 }
 
 std::optional<ImagePoint> Camera::project(const Eigen::Vector3d& point) const {

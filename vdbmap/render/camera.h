@@ -40,6 +40,9 @@ class Camera {
   /// The ray through a place in the picture; its direction is a unit vector.
   Ray ray_through(const Eigen::Vector2d& pixel) const;
 
+  /// Whether something in the box [m, local frame] may appear in the picture; never false where it does.
+  bool may_see(const Eigen::AlignedBox3d& box) const;
+
   /// Where a point [m, local frame] appears; nothing behind a pinhole camera.
   std::optional<ImagePoint> project(const Eigen::Vector3d& point) const;
 

@@ -232,11 +232,12 @@ std::optional<Camera> camera_along(std::span<const Eigen::Vector3d> path, const 
 }
 
 Camera perspective_camera(const VoxelLevel& level, const SceneExtent& extent, const ImageSize& size,
-                          std::span<const double> numbers, std::span<const Eigen::Vector3d> path) {
-  if (numbers.empty()) {
-    if (const std::optional<Camera> camera = camera_along(path, size)) return *camera;
-    return best_street_camera(level, extent, size);
-  }
+                          std::span<const Eigen::Vector3d> path) {
+  if (const std::optional<Camera> camera = camera_along(path, size)) return *camera;
+  return best_street_camera(level, extent, size);
+}
+
+Camera perspective_by(std::span<const double> numbers, const ImageSize& size) {
   check_count(numbers, 5, 6, "X,Y,Z,HEADING,ELEVATION[,FIELD_OF_VIEW]");
   check_elevation(numbers[4]);
   const double field_of_view_deg = numbers.size() == 6 ? numbers[5] : kStreetFieldOfViewDeg;
@@ -261,10 +262,11 @@ SceneExtent scene_extent(const VoxelLevel& level) {
 
 Camera choose_camera(const VoxelLevel& level, View view, const ImageSize& size, std::span<const double> numbers,
                      std::span<const Eigen::Vector3d> path) {
+  if (view == View::kPerspective && !numbers.empty()) return perspective_by(numbers, size);
   const SceneExtent extent = scene_extent(level);
   if (view == View::kPlan) return plan_camera(level, extent, size, numbers);
   if (view == View::kOrbit) return orbit_camera(level, extent, size, numbers);
-  return perspective_camera(level, extent, size, numbers, path);
+  return perspective_camera(level, extent, size, path);
 }
 
 }  // namespace vdbmap

@@ -32,8 +32,8 @@ SceneExtent scene_extent(const VoxelLevel& level);
 /// * perspective: x, y, z of the eye [m], heading (to the left of the x axis), elevation [deg][, field of view [deg]]
 /// * orbit: heading, elevation [deg][, distance from the middle of the map [m]]
 ///
-/// With a `path` [m], the perspective follows it. Throws std::invalid_argument for another count and impossible
-/// numbers.
+/// With a `path` [m], the perspective follows it. A perspective of given numbers does not depend on the level. Throws
+/// std::invalid_argument for another count and impossible numbers.
 Camera choose_camera(const VoxelLevel& level, View view, const ImageSize& size, std::span<const double> numbers = {},
                      std::span<const Eigen::Vector3d> path = {});
 

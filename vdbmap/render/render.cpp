@@ -7,6 +7,7 @@
 #include <limits>
 #include <numbers>
 #include <numeric>
+#include <span>
 #include <stdexcept>
 
 #include "vdbmap/core/parallel.h"
@@ -139,22 +140,31 @@ bool is_in_voxel(const VoxelLevel& level, const Camera& camera) {
          VoxelFinder(level).find(voxel_of_point(eye, voxels_per_metre)) != nullptr;
 }
 
-RenderResult render_level(const VoxelMap& map, const VoxelLevel& level, const VoxelColors& colors, const Camera& camera,
-                          const RenderOptions& options, const RenderOverlays& overlays) {
-  const std::vector<PathOverlay> paths = paths_of(overlays, map.frame.anchor);
-  const std::vector<PointsOverlay> points = points_of(overlays, map.frame.anchor);
-  VoxelView view = view_voxels(level, colors, camera);
-  if (options.has_decoration && options.view == View::kPlan) draw_metre_grid(view.image, camera, map.frame.anchor);
-  for (const PointsOverlay& cloud : points) draw_points(view, camera, cloud, level.voxel_size());
+// Layers of one scene, of which the first is the finest, with all that is drawn over them.
+RenderResult render_layers(std::span<const VoxelLayer> layers, const Eigen::Vector3d& anchor, const Camera& camera,
+                           const RenderOptions& options, const RenderOverlays& overlays) {
+  const std::vector<PathOverlay> paths = paths_of(overlays, anchor);
+  const std::vector<PointsOverlay> points = points_of(overlays, anchor);
+  VoxelView view = view_layers(layers, camera);
+  if (options.has_decoration && options.view == View::kPlan) draw_metre_grid(view.image, camera, anchor);
+  for (const PointsOverlay& cloud : points) draw_points(view, camera, cloud, layers.front().level.voxel_size());
   draw_paths(view, camera, paths, std::max(2.0, letter_size(options.size) / 5.0));
-  draw_regions(view, camera, overlays.regions, map.frame.anchor);
+  draw_regions(view, camera, overlays.regions, anchor);
   if (options.has_decoration) {
     draw_scale(view.image, camera, view);
     draw_north_arrow(view.image, heading_deg(camera));
-    draw_color_legend(view.image, colors.legend(), names_of(paths, points));
+    draw_color_legend(view.image, layers.front().colors.legend(), names_of(paths, points));
   }
-  return {std::move(view.image), is_in_voxel(level, camera)};
+  const auto holds_camera = [&](const VoxelLayer& layer) { return is_in_voxel(layer.level, camera); };
+  return {std::move(view.image), std::ranges::any_of(layers, holds_camera)};
 }
+
+RenderResult render_level(const VoxelMap& map, const VoxelLevel& level, const VoxelColors& colors, const Camera& camera,
+                          const RenderOptions& options, const RenderOverlays& overlays) {
+  return render_layers(std::array{VoxelLayer{level, colors}}, map.frame.anchor, camera, options, overlays);
+}
+
+}  // namespace
 
 Camera camera_of(const VoxelMap& map, const RenderOptions& options, const RenderOverlays& overlays) {
   const std::vector<PathOverlay> paths = paths_of(overlays, map.frame.anchor);
@@ -162,7 +172,17 @@ Camera camera_of(const VoxelMap& map, const RenderOptions& options, const Render
   return choose_camera(map.finest(), options.view, options.size, local_numbers(options, map.frame.anchor), path);
 }
 
-}  // namespace
+RenderResult render(const NearAndFar& parts, const Camera& camera, const RenderOptions& options,
+                    const RenderOverlays& overlays) {
+  const VoxelColors all_colors(parts.all, parts.all.finest(), options.color_by);
+  const VoxelColors near_colors(parts.near, parts.near.finest(), all_colors);
+  const VoxelColors far_colors(parts.far, parts.far.finest(), all_colors);
+  std::vector<VoxelLayer> layers;
+  if (parts.near.finest().size() > 0) layers.push_back({parts.near.finest(), near_colors});
+  if (parts.far.finest().size() > 0) layers.push_back({parts.far.finest(), far_colors});
+  if (layers.empty()) throw std::invalid_argument("the map has no voxels to look at");
+  return render_layers(layers, parts.all.frame.anchor, camera, options, overlays);
+}
 
 RenderResult render(const VoxelMap& map, const RenderOptions& options, const RenderOverlays& overlays) {
   Image(options.size.width, options.size.height);  // refuses sizes before any work

@@ -46,6 +46,22 @@ struct RenderResult {
   bool is_camera_in_voxel = false;  ///< the picture shows what is seen from inside of it
 };
 
+/// The camera of a picture of the map, chosen by its finest level where options say nothing. Throws as render().
+Camera camera_of(const VoxelMap& map, const RenderOptions& options, const RenderOverlays& overlays);
+
+/// A map in two parts that have no place in common, one of which may have no voxels: each is drawn by its finest level,
+/// in the colours of a level of all of it.
+struct NearAndFar {
+  const VoxelMap& near;
+  const VoxelMap& far;
+  const VoxelMap& all;
+};
+
+/// Draws what lies near the camera in finer voxels than what lies far. Without a diff; the level is not chosen by
+/// options. Throws as render().
+RenderResult render(const NearAndFar& parts, const Camera& camera, const RenderOptions& options,
+                    const RenderOverlays& overlays);
+
 /// Draws a map without a display: voxels as cubes in sunlight under an open sky. The same pixels for any number of
 /// threads. Throws std::invalid_argument for a size out of range, a level or attribute that the map has not, a map
 /// without voxels, a diff of other maps and an impossible camera.

@@ -191,6 +191,17 @@ VoxelColors::VoxelColors(const VoxelMap& map, const VoxelLevel& level, std::vect
   legend_.entries = change_entries(changes_);
 }
 
+VoxelColors::VoxelColors(const VoxelMap& map, const VoxelLevel& level, const VoxelColors& like)
+    : map_(map),
+      level_(level),
+      color_by_(like.color_by_),
+      legend_(like.legend_),
+      scale_(like.scale_),
+      latest_epoch_(like.latest_epoch_),
+      oldest_age_(like.oldest_age_) {
+  if (level.size() > 0) check_available(map, level, color_by_);
+}
+
 LinearColor VoxelColors::color_of_change(std::size_t record) const {
   const Change change = changes_[record];
   const bool is_quiet = change == Change::kUnchanged || change == Change::kUnobserved;

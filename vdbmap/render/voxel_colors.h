@@ -43,6 +43,9 @@ class VoxelColors {
   /// of its points where the map has them.
   VoxelColors(const VoxelMap& map, const VoxelLevel& level, std::vector<Change> changes, bool keeps_colors = false);
 
+  /// Of another level in the colours that equal values have in `like`.
+  VoxelColors(const VoxelMap& map, const VoxelLevel& level, const VoxelColors& like);
+
   LinearColor color_of(const VoxelIndex& voxel, std::size_t record) const;
   const ColorLegend& legend() const { return legend_; }
 

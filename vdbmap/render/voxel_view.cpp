@@ -5,6 +5,9 @@
 #include <array>
 #include <cmath>
 #include <limits>
+#include <memory>
+#include <optional>
+#include <utility>
 
 #include "vdbmap/core/parallel.h"
 #include "vdbmap/render/face_table.h"
@@ -54,20 +57,63 @@ struct PixelSights {
 
 std::int32_t plane_of(const RayHit& hit) { return 6 * hit.voxel[hit.face / 2] + hit.face; }
 
+/// Records of all layers are numbered one after the other.
+std::vector<std::size_t> first_records(std::span<const VoxelLayer> layers) {
+  std::vector<std::size_t> first = {0};
+  for (const VoxelLayer& layer : layers) first.push_back(first.back() + layer.level.size());
+  return first;
+}
+
+/// Follows rays through all layers.
+class LayerCaster {
+ public:
+  LayerCaster(std::span<const VoxelLayer> layers, const Camera& camera) : first_records_(first_records(layers)) {
+    for (const VoxelLayer& layer : layers) {
+      casters_.emplace_back(layer.level);
+      beams_.push_back(std::make_unique<RayBeams>(layer.level, camera, kTileSize));
+    }
+  }
+
+  /// With the number of the record among those of all layers.
+  std::optional<RayHit> first_hit(const Ray& ray, double begin) const {
+    std::optional<RayHit> first;
+    for (std::size_t i = 0; i < casters_.size(); ++i) {
+      std::optional<RayHit> hit = casters_[i].first_hit(ray, {begin});
+      if (!hit || (first && first->distance <= hit->distance)) continue;
+      hit->record += first_records_[i];
+      first = hit;
+    }
+    return first;
+  }
+
+  double free_distance(int left, int top) const {
+    double distance = beams_.front()->free_distance(left, top);
+    for (const auto& beams : beams_) distance = std::min(distance, beams->free_distance(left, top));
+    return distance;
+  }
+
+ private:
+  std::vector<std::size_t> first_records_;
+  std::vector<RayCaster> casters_;
+  std::vector<std::unique_ptr<RayBeams>> beams_;
+};
+
 /// Looks along the rays of a camera and marks the faces it sees.
 class Observer {
  public:
-  Observer(const VoxelLevel& level, const Camera& camera, FaceTable& table)
-      : caster_(level),
-        beams_(level, camera, kTileSize),
-        camera_(camera),
-        table_(table),
-        voxel_size_(level.voxel_size()) {}
+  Observer(std::span<const VoxelLayer> layers, const Camera& camera, FaceTable& table)
+      : caster_(layers, camera), camera_(camera), table_(table) {
+    for (const VoxelLayer& layer : layers) {
+      voxel_sizes_.push_back(layer.level.voxel_size());
+      largest_voxel_ = std::max(largest_voxel_, layer.level.voxel_size());
+    }
+    first_records_ = first_records(layers);
+  }
 
   // The rows of tiles from `top` on.
   void look_at_middles(PixelSights& sight, int top) const {
     for (int left = 0; left < sight.width; left += kTileSize) {
-      const double begin = beams_.free_distance(left, top);
+      const double begin = caster_.free_distance(left, top);
       for (int y = top; y < std::min(top + kTileSize, sight.height); ++y) {
         for (int x = left; x < std::min(left + kTileSize, sight.width); ++x) look_at_middle(sight, x, y, begin);
       }
@@ -80,7 +126,7 @@ class Observer {
       EdgePixel pixel{x, {}};
       const double begin = nearest_around(sight, x, y);
       for (std::size_t i = 0; i < kFurther.size(); ++i) {
-        const auto hit = caster_.first_hit(camera_.ray_through({x + kFurther[i][0], y + kFurther[i][1]}), {begin});
+        const auto hit = caster_.first_hit(camera_.ray_through({x + kFurther[i][0], y + kFurther[i][1]}), begin);
         pixel.faces[i] = hit ? face_code(*hit) : kNoFace;
         if (hit) table_.mark(pixel.faces[i]);
       }
@@ -91,7 +137,7 @@ class Observer {
  private:
   void look_at_middle(PixelSights& sight, int x, int y, double begin) const {
     const std::size_t i = sight.index(x, y);
-    const auto hit = caster_.first_hit(camera_.ray_through({x + 0.5, y + 0.5}), {begin});
+    const auto hit = caster_.first_hit(camera_.ray_through({x + 0.5, y + 0.5}), begin);
     sight.faces[i] = hit ? face_code(*hit) : kNoFace;
     sight.planes[i] = hit ? plane_of(*hit) : 0;
     sight.distances[i] = hit ? static_cast<float>(hit->distance) : kFar;
@@ -103,7 +149,14 @@ class Observer {
     if (sight.faces[a] == sight.faces[b]) return false;
     if (sight.faces[a] == kNoFace || sight.faces[b] == kNoFace || sight.planes[a] != sight.planes[b]) return true;
     const double pixel = camera_.is_perspective() ? sight.distances[a] * camera_.pixel_width() : camera_.pixel_width();
-    return voxel_size_ < pixel || voxel_size_ > 4 * pixel;
+    const double voxel_size = voxel_size_of(sight.faces[a]);
+    return voxel_size < pixel || voxel_size > 4 * pixel;
+  }
+
+  double voxel_size_of(FaceCode face) const {
+    std::size_t layer = 0;
+    while (face / 6 >= first_records_[layer + 1]) ++layer;
+    return voxel_sizes_[layer];
   }
 
   bool is_at_edge(const PixelSights& sight, int x, int y) const {
@@ -122,14 +175,15 @@ class Observer {
         nearest = std::min(nearest, sight.distances[sight.index(i, j)]);
       }
     }
-    return std::max(0.0, 0.98 * static_cast<double>(nearest) - 3 * voxel_size_);
+    return std::max(0.0, 0.98 * static_cast<double>(nearest) - 3 * largest_voxel_);
   }
 
-  RayCaster caster_;
-  RayBeams beams_;
+  LayerCaster caster_;
   const Camera& camera_;
   FaceTable& table_;
-  double voxel_size_;
+  std::vector<double> voxel_sizes_;  // of the layers
+  std::vector<std::size_t> first_records_;
+  double largest_voxel_ = 0;
 };
 
 template <typename Body>
@@ -138,9 +192,9 @@ void for_each_row(int height, const Body& body) {
       static_cast<std::size_t>(height), [&](std::size_t y) { body(static_cast<int>(y)); }, kRowsAtOnce);
 }
 
-PixelSights look(const VoxelLevel& level, const Camera& camera, FaceTable& table) {
+PixelSights look(std::span<const VoxelLayer> layers, const Camera& camera, FaceTable& table) {
   PixelSights sight(camera.size());
-  const Observer observer(level, camera, table);
+  const Observer observer(layers, camera, table);
   const int num_tile_rows = (sight.height + kTileSize - 1) / kTileSize;
   parallel_for(static_cast<std::size_t>(num_tile_rows),
                [&](std::size_t row) { observer.look_at_middles(sight, static_cast<int>(row) * kTileSize); });
@@ -156,16 +210,18 @@ Eigen::Vector3d direction_to_viewer(const Camera& camera, const Eigen::Vector3d&
 /// Gives the faces that are seen of a voxel their colour and light.
 class FaceLighter {
  public:
-  FaceLighter(const VoxelLevel& level, const VoxelColors& colors, const Camera& camera, const FaceTable& table)
-      : level_(level),
-        colors_(colors),
+  /// The first record of the layer has a number among those of all layers.
+  FaceLighter(const VoxelLayer& layer, std::size_t first_record, const Camera& camera, const FaceTable& table)
+      : level_(layer.level),
+        colors_(layer.colors),
+        first_record_(first_record),
         camera_(camera),
         table_(table),
-        caster_(level),
+        caster_(layer.level),
         lighting_(Lighting::for_camera(camera)) {}
 
   void light(const VoxelIndex& voxel, std::size_t record, std::vector<LinearColor>& lit) const {
-    const unsigned seen = table_.seen(record);
+    const unsigned seen = table_.seen(first_record_ + record);
     if (seen == 0) return;
     const LinearColor color = colors_.color_of(voxel, record);
     const Eigen::Vector3d center = center_of_voxel(voxel, level_.voxel_size());
@@ -181,7 +237,7 @@ class FaceLighter {
         light_on_voxel(caster_, center, level_.voxel_size(), sum.normalized(), lighting_, rays_for(voxel, center));
     for_each_bit(seen, [&](VoxelFace face) {
       const LinearColor falls_in = light_on_face(light, normals[face], lighting_);
-      lit[table_.number(static_cast<FaceCode>(6 * record + face))] = color.cwiseProduct(falls_in);
+      lit[table_.number(static_cast<FaceCode>(6 * (first_record_ + record) + face))] = color.cwiseProduct(falls_in);
     });
   }
 
@@ -201,6 +257,7 @@ class FaceLighter {
 
   const VoxelLevel& level_;
   const VoxelColors& colors_;
+  std::size_t first_record_;
   const Camera& camera_;
   const FaceTable& table_;
   RayCaster caster_;
@@ -208,12 +265,15 @@ class FaceLighter {
 };
 
 // Colour and light of every face that is seen, by its number.
-std::vector<LinearColor> light_faces(const VoxelLevel& level, const VoxelColors& colors, const Camera& camera,
-                                     FaceTable& table) {
+std::vector<LinearColor> light_faces(std::span<const VoxelLayer> layers, const Camera& camera, FaceTable& table) {
   std::vector<LinearColor> lit(table.count());
-  const FaceLighter lighter(level, colors, camera, table);
-  parallel_for_each_voxel(level,
-                          [&](const VoxelIndex& voxel, std::size_t record) { lighter.light(voxel, record, lit); });
+  std::size_t first_record = 0;
+  for (const VoxelLayer& layer : layers) {
+    const FaceLighter lighter(layer, first_record, camera, table);
+    parallel_for_each_voxel(layer.level,
+                            [&](const VoxelIndex& voxel, std::size_t record) { lighter.light(voxel, record, lit); });
+    first_record += layer.level.size();
+  }
   return lit;
 }
 
@@ -279,10 +339,14 @@ Haze haze_of(const PixelSights& sight) {
 }  // namespace
 
 VoxelView view_voxels(const VoxelLevel& level, const VoxelColors& colors, const Camera& camera) {
+  return view_layers(std::array{VoxelLayer{level, colors}}, camera);
+}
+
+VoxelView view_layers(std::span<const VoxelLayer> layers, const Camera& camera) {
   Image image(camera.size().width, camera.size().height);
-  FaceTable table(level.size());
-  PixelSights sight = look(level, camera, table);
-  const std::vector<LinearColor> lit = light_faces(level, colors, camera, table);
+  FaceTable table(first_records(layers).back());
+  PixelSights sight = look(layers, camera, table);
+  const std::vector<LinearColor> lit = light_faces(layers, camera, table);
   const Painter painter(sight, table, lit, camera, haze_of(sight));
   for_each_row(sight.height, [&](int y) { painter.paint_row(image, y); });
   return {std::move(image), std::move(sight.distances)};

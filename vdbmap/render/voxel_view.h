@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #pragma once
 
+#include <span>
 #include <vector>
 
 #include "vdbmap/render/camera.h"
@@ -20,7 +21,17 @@ struct VoxelView {
   }
 };
 
+/// Voxels of one size that are drawn.
+struct VoxelLayer {
+  const VoxelLevel& level;
+  const VoxelColors& colors;
+};
+
 /// Draws the voxels of a level as lit cubes, anti-aliased at their edges; the same pixels for any number of threads.
 VoxelView view_voxels(const VoxelLevel& level, const VoxelColors& colors, const Camera& camera);
+
+/// The same of several levels, each of another part of the scene. Voxels cast their shadows on those of their own
+/// level.
+VoxelView view_layers(std::span<const VoxelLayer> layers, const Camera& camera);
 
 }  // namespace vdbmap

@@ -81,6 +81,8 @@ std::filesystem::path epoch_path(const std::filesystem::path& folder, std::int32
 }
 std::filesystem::path tiles_path(const std::filesystem::path& folder) { return folder / "tiles"; }
 
+std::filesystem::path cache_path(const std::filesystem::path& folder) { return folder / "cache"; }
+
 std::filesystem::path tile_path(const std::filesystem::path& folder, const CityTile& tile) {
   return tiles_path(folder) / tile_file_name(tile);
 }

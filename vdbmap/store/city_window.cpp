@@ -37,12 +37,34 @@ auto unless_missing(const std::filesystem::path& path, const Load& load) -> std:
   }
 }
 
+void check_name(const std::filesystem::path& path, const CityTile& tile) {
+  if (stated_checksum(path) != tile.hash) throw IoError::malformed(path, "is not the tile that its name says");
+}
+
 VoxelMap load_checked(const City& city, const CityTile& tile) {
   const std::filesystem::path path = tile_path(city.folder, tile);
-  if (stated_checksum(path) != tile.hash) throw IoError::malformed(path, "is not the tile that its name says");
+  check_name(path, tile);
   VoxelMap map = load_map(path);
   const std::string problem = tile_problem(map, tile, city.manifest.layout);
   if (!problem.empty()) throw IoError::malformed(path, problem);
+  return map;
+}
+
+// The coarser levels are the manifest's; of the finest, which takes most of the time, nothing is known.
+VoxelMap load_coarser_checked(const City& city, const CityTile& tile) {
+  const std::filesystem::path path = tile_path(city.folder, tile);
+  check_name(path, tile);
+  VoxelMap map = load_coarser_levels(path);
+  const CityLayout& layout = city.manifest.layout;
+  map.levels.insert(map.levels.begin(), VoxelLevel(layout.voxel_sizes.front(), {}, {}));
+  map.has_color = layout.has_color;
+  std::vector<double> voxel_sizes;
+  std::vector<std::uint64_t> num_voxels = {tile.num_voxels.front()};
+  for (const VoxelLevel& level : map.levels) voxel_sizes.push_back(level.voxel_size());
+  for (std::size_t i = 1; i < map.levels.size(); ++i) num_voxels.push_back(map.levels[i].size());
+  if (map.frame != layout.frame) throw IoError::malformed(path, "has another anchor or EPSG code than the city");
+  if (voxel_sizes != layout.voxel_sizes) throw IoError::malformed(path, "has other levels than the city");
+  if (num_voxels != tile.num_voxels) throw IoError::malformed(path, "holds other voxels than the manifest counts");
   return map;
 }
 
@@ -57,6 +79,26 @@ VoxelMap without_voxels(const CityLayout& layout) {
   map.has_color = layout.has_color;
   map.label_scheme = layout.label_scheme;
   return map;
+}
+
+// The chosen tiles as `load` loads each, or nothing where it is missing.
+template <typename Load>
+VoxelMap load_tiles(City& city, const TileChoice& is_wanted, const Load& load) {
+  for (int state = 0; state < kMostStates; ++state) {
+    const std::vector<CityTile> tiles = chosen_tiles(city.manifest, is_wanted);
+    std::vector<std::optional<VoxelMap>> loaded(tiles.size());
+    parallel_for(tiles.size(), [&](std::size_t i) { loaded[i] = load(tiles[i]); });
+    const auto missing = std::ranges::find(loaded, false, &std::optional<VoxelMap>::has_value);
+    if (missing == loaded.end()) {
+      std::vector<VoxelMap> maps;
+      for (std::optional<VoxelMap>& map : loaded) maps.push_back(std::move(*map));
+      if (maps.size() == 1) return std::move(maps.front());
+      return maps.empty() ? without_voxels(city.manifest.layout) : splice(maps);
+    }
+    const CityTile& tile = tiles[static_cast<std::size_t>(missing - loaded.begin())];
+    if (!reopen(city)) throw IoError::malformed(tile_path(city.folder, tile), "is missing");
+  }
+  throw IoError::system(city.folder, "cannot be read while it changes all the time", EBUSY);
 }
 
 }  // namespace
@@ -80,21 +122,13 @@ std::optional<VoxelMap> load_tile(const City& city, const CityTile& tile) {
 }
 
 VoxelMap load_window(City& city, const TileChoice& is_wanted) {
-  for (int state = 0; state < kMostStates; ++state) {
-    const std::vector<CityTile> tiles = chosen_tiles(city.manifest, is_wanted);
-    std::vector<std::optional<VoxelMap>> loaded(tiles.size());
-    parallel_for(tiles.size(), [&](std::size_t i) { loaded[i] = load_tile(city, tiles[i]); });
-    const auto missing = std::ranges::find(loaded, false, &std::optional<VoxelMap>::has_value);
-    if (missing == loaded.end()) {
-      std::vector<VoxelMap> maps;
-      for (std::optional<VoxelMap>& map : loaded) maps.push_back(std::move(*map));
-      if (maps.size() == 1) return std::move(maps.front());
-      return maps.empty() ? without_voxels(city.manifest.layout) : splice(maps);
-    }
-    const CityTile& tile = tiles[static_cast<std::size_t>(missing - loaded.begin())];
-    if (!reopen(city)) throw IoError::malformed(tile_path(city.folder, tile), "is missing");
-  }
-  throw IoError::system(city.folder, "cannot be read while it changes all the time", EBUSY);
+  return load_tiles(city, is_wanted, [&](const CityTile& tile) { return load_tile(city, tile); });
+}
+
+VoxelMap load_coarser_window(City& city, const TileChoice& is_wanted) {
+  return load_tiles(city, is_wanted, [&](const CityTile& tile) {
+    return unless_missing(tile_path(city.folder, tile), [&] { return load_coarser_checked(city, tile); });
+  });
 }
 
 VoxelMap load_city(City& city) {

@@ -19,6 +19,9 @@ using TileChoice = std::function<bool(const CityTile&)>;
 /// naming the tile that is missing, damaged or not the manifest's.
 VoxelMap load_window(City& city, const TileChoice& is_wanted);
 
+/// As load_window(), but the finest level is not read: it has no voxels.
+VoxelMap load_coarser_window(City& city, const TileChoice& is_wanted);
+
 /// All tiles.
 VoxelMap load_city(City& city);
 

@@ -26,7 +26,7 @@ namespace {
 using Path = std::filesystem::path;
 
 // Names in the folder of a city; those of unfinished files go on with a dot and letters.
-constexpr std::array<std::string_view, 5> kNames = {"map.json", "epochs", "tiles", "lock", "sums"};
+constexpr std::array<std::string_view, 6> kNames = {"map.json", "epochs", "tiles", "lock", "sums", "cache"};
 
 bool is_ours(const std::string& name) {
   return std::ranges::any_of(kNames, [&](std::string_view ours) {
@@ -190,6 +190,11 @@ void CityWriter::sweep() const {
   for (const Path& file : list_folder_entries(tiles_path(folder_))) {
     const std::string name = file.filename().string();
     if (may_be_tile(name) && !named.contains(name)) remove_with_content(file);
+  }
+  for (const Path& file : list_folder_entries(cache_path(folder_))) {
+    const std::string name = file.filename().string();
+    const std::size_t hash_end = name.find('.', name.find('.') + 1);
+    if (!named.contains(name.substr(0, hash_end) + ".vdb")) remove_with_content(file);
   }
   for (const Path& folder : {folder_, epochs_path(folder_)}) {
     for (const Path& file : list_folder_entries(folder)) {

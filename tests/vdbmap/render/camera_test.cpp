@@ -60,6 +60,31 @@ TEST(Camera, WhatIsBehindAPinholeIsNotSeen) {
   EXPECT_FALSE(camera.project({0, 0, 0}).has_value());
 }
 
+// Whatever box: where one of its points appears, it may be seen; boxes behind a pinhole and far to its sides are not.
+TEST(Camera, MaySeeEveryBoxOfWhichAPointAppears) {
+  std::mt19937 random(4);
+  std::uniform_real_distribution<double> number(-1, 1);
+  const auto vector = [&] { return Eigen::Vector3d(number(random), number(random), number(random)); };
+  const Eigen::Isometry3d eye = map_from_camera_at({3, -2, 5}, 30, -10);
+  int num_hidden = 0;
+  for (const Camera& camera : {Camera::perspective(eye, 60, {200, 100}), Camera::orthographic(eye, 40, {200, 100})}) {
+    for (int i = 0; i < 2000; ++i) {
+      Eigen::AlignedBox3d box(Eigen::Vector3d(100 * vector()));
+      box.extend(box.min() + 10 * vector());
+      bool appears = false;
+      for (int j = 0; j < 20; ++j) {
+        const Eigen::Vector3d share = (Eigen::Vector3d::Ones() + vector()) / 2;
+        const auto point = camera.project(box.min() + share.cwiseProduct(box.sizes()));
+        appears |= point && point->pixel.x() >= 0 && point->pixel.x() <= 200 && point->pixel.y() >= 0 &&
+                   point->pixel.y() <= 100;
+      }
+      EXPECT_TRUE(camera.may_see(box) || !appears);
+      num_hidden += camera.may_see(box) ? 0 : 1;
+    }
+  }
+  EXPECT_GT(num_hidden, 2000);  // of 4000: the pictures show far less than half of all that is around
+}
+
 TEST(Camera, ImpossibleCamerasAreRefused) {
   const Eigen::Isometry3d pose = Eigen::Isometry3d::Identity();
   for (const double bad : {0.0, -1.0, 171.0, std::nan("")}) {

@@ -24,6 +24,7 @@ constexpr const char* kVoxelGridName = "voxels";
 constexpr const char* kHistoryName = "history";
 
 bool is_voxel_grid(const std::string& name) { return name.starts_with(kVoxelGridName); }
+bool is_coarser_voxel_grid(const std::string& name) { return is_voxel_grid(name) && name != kVoxelGridName; }
 
 // The makers keep references to what they are made of.
 void add_level(std::vector<GridMaker>& grids, const VoxelMap& map, const VoxelLevel& level,
@@ -35,7 +36,6 @@ void add_level(std::vector<GridMaker>& grids, const VoxelMap& map, const VoxelLe
 
 // Levels are whole multiples of each other and hold the same points.
 void check_levels(const VoxelMap& map, const std::filesystem::path& path) {
-  if (map.levels.empty()) throw IoError::malformed(path, "holds no grid 'voxels' of a map");
   for (std::size_t i = 0; i < map.levels.size(); ++i) {
     try {
       voxels_per_metre(map.levels[i].voxel_size());
@@ -44,6 +44,25 @@ void check_levels(const VoxelMap& map, const std::filesystem::path& path) {
       throw IoError::malformed(path, error.what());
     }
   }
+}
+
+VoxelMap load_levels(const std::filesystem::path& path, const GridFilter& is_wanted) {
+  // The fog beside the voxels takes more memory than they do, and tells nothing new.
+  VdbContent content = read_vdb(path, is_wanted);
+  VoxelMap map;
+  map.frame = frame_of_metadata(*content.metadata, path);
+  map.label_scheme = label_scheme_of_metadata(*content.metadata);
+  for (openvdb::GridBase::Ptr& grid : content.grids) {
+    const auto voxels = openvdb::gridPtrCast<openvdb::points::PointDataGrid>(std::exchange(grid, nullptr));
+    if (!voxels) continue;
+    ReadLevel read = read_voxel_grid(*voxels, path);
+    map.has_color |= read.has_color;
+    map.levels.push_back(std::move(read.level));
+  }
+  std::sort(map.levels.begin(), map.levels.end(),
+            [](const VoxelLevel& a, const VoxelLevel& b) { return a.voxel_size() < b.voxel_size(); });
+  check_levels(map, path);
+  return map;
 }
 
 }  // namespace
@@ -72,23 +91,12 @@ bool is_map_file(const std::filesystem::path& path) {
 }
 
 VoxelMap load_map(const std::filesystem::path& path) {
-  // The fog beside the voxels takes more memory than they do, and tells nothing new.
-  VdbContent content = read_vdb(path, is_voxel_grid);
-  VoxelMap map;
-  map.frame = frame_of_metadata(*content.metadata, path);
-  map.label_scheme = label_scheme_of_metadata(*content.metadata);
-  for (openvdb::GridBase::Ptr& grid : content.grids) {
-    const auto voxels = openvdb::gridPtrCast<openvdb::points::PointDataGrid>(std::exchange(grid, nullptr));
-    if (!voxels) continue;
-    ReadLevel read = read_voxel_grid(*voxels, path);
-    map.has_color |= read.has_color;
-    map.levels.push_back(std::move(read.level));
-  }
-  std::sort(map.levels.begin(), map.levels.end(),
-            [](const VoxelLevel& a, const VoxelLevel& b) { return a.voxel_size() < b.voxel_size(); });
-  check_levels(map, path);
+  VoxelMap map = load_levels(path, is_voxel_grid);
+  if (map.levels.empty()) throw IoError::malformed(path, "holds no grid 'voxels' of a map");
   return map;
 }
+
+VoxelMap load_coarser_levels(const std::filesystem::path& path) { return load_levels(path, is_coarser_voxel_grid); }
 
 MapHistory load_history(const std::filesystem::path& path) {
   const VdbContent content = read_vdb(path, [](const std::string&) { return false; });

@@ -37,6 +37,9 @@ bool is_map_file(const std::filesystem::path& path);
 /// Reads what save_map() wrote. Throws IoError naming the file and the reason, also for .vdb files of other programs.
 VoxelMap load_map(const std::filesystem::path& path);
 
+/// The same without the finest level, which is not read: a map has most of its voxels there.
+VoxelMap load_coarser_levels(const std::filesystem::path& path);
+
 /// Reads from what a map file was made; empty where it does not say. Throws IoError.
 MapHistory load_history(const std::filesystem::path& path);
 
