@@ -7,6 +7,7 @@ vdbmap=$1
 folder=$2
 cluster=$(dirname "${BASH_SOURCE[0]}")/../../tools/cluster.sh
 export SLURM_CONF=$folder/slurm/slurm.conf
+"$cluster" stop "$folder/slurm" # of a run that was interrupted
 rm -rf "$folder"
 mkdir -p "$folder"/{survey,marks}
 
@@ -109,4 +110,7 @@ done
 diff -r --exclude=lock "$folder/alone" "$folder/city" || fail "the bytes are not those of one machine"
 "$vdbmap" tile submit "$folder/city.job" --slurm | grep -q "nothing is left to do" || fail "a published job is submitted"
 "$vdbmap" check "$folder/city"
+"$cluster" stop "$folder/slurm"
+is_gone() { ! pgrep -f -- "$folder/slurm/slurm.conf"; }
+wait_for is_gone # the kernel ends what was on a node in its own time
 rm -rf "$folder"

@@ -145,6 +145,32 @@ TEST_F(TileCommand, WhatIsSubmittedIsWhatIsLeftToDo) {
   EXPECT_EQ(printed(), "nothing is left to do\n");
 }
 
+// In place of Slurm's sbatch: writes down what it is told, and says the number of a job.
+TEST_F(TileCommand, StagesAreSubmittedEachAfterTheOneBefore) {
+  EXPECT_EQ(plan().exit_code, 0);
+  const auto submit = [&](const std::string& folders) {
+    return test::run_command("/usr/bin/env", {"PATH=" + folders, VDBMAP_COMMAND, "tile", "submit", job(), "--slurm"});
+  };
+  expect_error(submit(path("none")), ExitCode::kInputOutputFailed, "sbatch: cannot be run: No such file");
+  std::filesystem::create_directory(path("bin"));
+  const auto write_sbatch = [&](const std::string& body) {
+    test::write_raw(path("bin/sbatch"), "#!/bin/sh\n" + body);
+    std::filesystem::permissions(path("bin/sbatch"), std::filesystem::perms::owner_all);
+  };
+  write_sbatch("echo no such partition; exit 1\n");
+  expect_error(submit(path("bin")), ExitCode::kInputOutputFailed, "sbatch: failed, saying 'no such partition'");
+  write_sbatch("echo \"$*\" >> " + path("told") + "\nread n < " + path("told") + "\necho \"4${#n};cluster\"\n");
+  const CommandResult submitted = submit(path("bin"));
+  const std::string told = test::read_raw(path("told"));
+  const std::string number = "4" + std::to_string(told.find('\n'));
+  EXPECT_EQ(submitted.out,
+            "map        job " + number + "\nreduce     job " + number + "\nfinish     job " + number + "\n");
+  EXPECT_EQ(num_lines(told), 3U) << told;
+  EXPECT_EQ(told.find("--dependency"), told.find("--dependency=afterok:" + number + " --kill-on-invalid-dep=yes"));
+  EXPECT_NE(told.find("/city.job/slurm/finish.sh\n"), std::string::npos) << told;
+  EXPECT_NE(test::read_raw(path("city.job/slurm/map.sh")).find("tile map"), std::string::npos);
+}
+
 // Words of the shell in names are names.
 TEST_F(TileCommand, ScriptsQuoteWhatTheyName) {
   const std::string odd = path("it's $(touch x) city");

@@ -9,7 +9,7 @@
 #include <utility>
 
 #include "vdbmap/core/error.h"
-#include "vdbmap/core/parallel.h"
+#include "vdbmap/core/parallel_tasks.h"
 #include "vdbmap/store/tile_finish.h"
 
 namespace vdbmap {
@@ -27,7 +27,7 @@ std::vector<Part> all_parts(const Job& job, std::vector<LeftOutSource>& left_out
   const std::size_t count = job.plan.sources.size();
   std::vector<std::optional<Part>> opened(count);
   std::vector<std::optional<LeftOutSource>> reasons(count);
-  parallel_for(count, [&](std::size_t i) {
+  parallel_tasks(count, [&](std::size_t i) {
     std::error_code error;
     if (!std::filesystem::exists(part_path(job.folder, i), error)) reasons[i] = left_out_source(job, i);
     if (!reasons[i]) opened[i] = part_of_source(job, i);

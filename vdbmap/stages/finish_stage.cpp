@@ -5,7 +5,7 @@
 #include <utility>
 
 #include "vdbmap/core/error.h"
-#include "vdbmap/core/parallel.h"
+#include "vdbmap/core/parallel_tasks.h"
 #include "vdbmap/io/file/atomic_file.h"
 #include "vdbmap/io/file/byte_reader.h"
 #include "vdbmap/stages/reduce_stage.h"
@@ -27,7 +27,7 @@ struct MadeTile {
 
 std::vector<MadeTile> made_tiles(const Job& job, const CountedParts& counted) {
   std::vector<CityManifest> buckets(job.plan.num_buckets);
-  parallel_for(buckets.size(), [&](std::size_t i) { buckets[i] = open_bucket(job, i, counted); });
+  parallel_tasks(buckets.size(), [&](std::size_t i) { buckets[i] = open_bucket(job, i, counted); });
   std::vector<MadeTile> made;
   for (std::size_t i = 0; i < buckets.size(); ++i) {
     for (CityTile& tile : buckets[i].tiles) made.push_back({std::move(tile), bucket_path(job.folder, i)});
@@ -53,7 +53,7 @@ CityManifest publish(const Job& job, const CountedParts& counted) {
   CityWriter writer(job.plan.city);
   check_city(job.plan, counted);
   const CityManifest manifest = manifest_of(counted, made);
-  parallel_for(made.size(), [&](std::size_t i) { writer.adopt_tile(made[i].tile, made[i].folder); });
+  parallel_tasks(made.size(), [&](std::size_t i) { writer.adopt_tile(made[i].tile, made[i].folder); });
   write_file(published_path(job), hash_of_bytes(text_of(manifest)));
   writer.publish(manifest, job.plan.keep_epochs);
   return manifest;

@@ -6,7 +6,7 @@
 #include <stdexcept>
 
 #include "vdbmap/core/error.h"
-#include "vdbmap/core/parallel.h"
+#include "vdbmap/core/parallel_tasks.h"
 #include "vdbmap/stages/finish_stage.h"
 #include "vdbmap/stages/map_stage.h"
 #include "vdbmap/stages/reduce_stage.h"
@@ -16,7 +16,7 @@ namespace {
 
 std::vector<std::size_t> missing_of(std::size_t count, const std::function<bool(std::size_t)>& is_there) {
   std::vector<char> is_missing(count, 0);
-  parallel_for(count, [&](std::size_t i) { is_missing[i] = is_there(i) ? 0 : 1; });
+  parallel_tasks(count, [&](std::size_t i) { is_missing[i] = is_there(i) ? 0 : 1; });
   std::vector<std::size_t> missing;
   for (std::size_t i = 0; i < count; ++i) {
     if (is_missing[i]) missing.push_back(i);

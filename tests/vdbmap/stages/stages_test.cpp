@@ -8,6 +8,8 @@
 #include <vector>
 
 #include <gtest/gtest.h>
+#include <sys/stat.h>
+#include <unistd.h>
 
 #include "tests/support/city_folders.h"
 #include "tests/support/folders.h"
@@ -128,6 +130,20 @@ TEST_F(Stages, AnOutputThatIsThereIsSkipped) {
   EXPECT_FALSE(run(job).was_published);
   EXPECT_TRUE(run(job).was_published);
   EXPECT_EQ(reduce_bucket(job, 2), ReduceOutcome::kWasThere);
+}
+
+// Where no second name can be given to a file, its bytes are copied.
+TEST_F(Stages, AJobOnAnotherFileSystemGivesTheSameBytes) {
+  struct stat memory {};
+  struct stat here {};
+  if (::stat("/dev/shm", &memory) != 0 || ::stat(folder_.path().c_str(), &here) != 0 || memory.st_dev == here.st_dev) {
+    GTEST_SKIP() << "needs two file systems";
+  }
+  const std::vector<MapInput> inputs = three_files();
+  const std::filesystem::path job = "/dev/shm/vdbmap_job_" + std::to_string(::getpid());
+  run(plan_job(job, inputs, options()));
+  std::filesystem::remove_all(job);
+  expect_built(inputs, options());
 }
 
 TEST_F(Stages, TwoThatDoTheSameAtOnceDoNoHarm) {
