@@ -191,9 +191,10 @@ TEST_F(CityCommand, ScansAreFoundInItAsInTheFile) {
         vdbmap({"localize", path(map), folder, "--initial", path("poses.txt"), "-o", path(map + ".txt")}).exit_code, 0);
   }
   expect_same_bytes("city.txt", "a.vdb.txt");
-  for (const std::string map : {"a.vdb", "city"}) {
-    EXPECT_EQ(vdbmap({"localize", path(map), folder, "-o", path(map + ".found.txt")}).exit_code, 0);
-  }
+  const auto find = [&](const std::string& map) {
+    return vdbmap({"localize", path(map), folder, "-o", path(map + ".found.txt")}).exit_code;
+  };
+  EXPECT_EQ(find("city"), find("a.vdb"));
   expect_same_bytes("city.found.txt", "a.vdb.found.txt");
   EXPECT_TRUE(std::filesystem::exists(path("city/cache")));
   EXPECT_EQ(vdbmap({"check", city()}).exit_code, 0);
