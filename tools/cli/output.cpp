@@ -15,7 +15,7 @@ namespace vdbmap::cli {
 namespace {
 
 // A path need not be UTF-8; JSON must be. And it may end up on a terminal.
-std::string printable(const nlohmann::ordered_json& result) {
+std::string json_lines(const nlohmann::ordered_json& result) {
   return with_escaped_controls(result.dump(2, ' ', false, nlohmann::ordered_json::error_handler_t::replace)) + "\n";
 }
 
@@ -28,10 +28,10 @@ void write_to_stdout(std::string_view text) {
 
 void print_result(std::string_view text) { write_to_stdout(printable_lines(text)); }
 
-void print_json(const nlohmann::ordered_json& result) { write_to_stdout(printable(result)); }
+void print_json(const nlohmann::ordered_json& result) { write_to_stdout(json_lines(result)); }
 
 void write_json(const std::filesystem::path& path, const nlohmann::ordered_json& result) {
-  write_file(path, printable(result));
+  write_file(path, json_lines(result));
 }
 
 }  // namespace vdbmap::cli
