@@ -88,7 +88,7 @@ TEST_F(Update, TakesAwayWhatIsGoneAndKeepsTheHistory) {
 
 TEST_F(Update, ClassesThatAreNotWantedDoNotComeIntoTheMap) {
   const std::string before = map_with_box();
-  drive("second", true);
+  drive("second", false);
   constexpr std::uint16_t kPerson = 30;
   constexpr std::uint16_t kRoad = 40;
   std::filesystem::create_directory(path("labels"));
