@@ -142,8 +142,9 @@ void run_with_rays_of_scans(const ChosenInputs& chosen, const std::vector<ScanPl
                             const BuildCommandOptions& options, const CommonOptions& common) {
   const auto start = std::chrono::steady_clock::now();
   Progress progress("building from scans, then following rays", 2 * chosen.inputs.size(), common);
-  PosedDrive drive(chosen.inputs, all,
-                   {options.points.read, files.inputs.range, options.points.classes, true, [&progress] { progress.advance(); }});
+  PosedDrive drive(
+      chosen.inputs, all,
+      {options.points.read, files.inputs.range, options.points.classes, true, [&progress] { progress.advance(); }});
   const MapFromFiles built = build_of_drive(drive, files, chosen);
   const MapExtras extras{find_visibility(built.map, [&](const auto& take) { drive.for_each(take); }),
                          history_of(chosen, options)};

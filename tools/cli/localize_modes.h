@@ -9,9 +9,9 @@
 #include "registration/localizer.h"
 #include "tools/cli/common_options.h"
 #include "tools/cli/localize_report.h"
-#include "vdbmap/store/map_windows.h"
 #include "vdbmap/io/poses/trajectory_file.h"
 #include "vdbmap/io/scans/scan_sequence.h"
+#include "vdbmap/store/map_windows.h"
 
 namespace vdbmap::cli {
 

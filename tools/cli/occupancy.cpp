@@ -121,11 +121,12 @@ LaterEpoch look_at_scans(const OccupancyCommandOptions& options, const CommonOpt
   LaterEpoch later;
   if (!chosen.poses->poses.times.empty()) later.date = date_of_time(chosen.poses->poses.times.front());
   Progress progress("looking along rays", chosen.inputs.size(), common);
-  PosedDrive drive(
-      chosen.inputs, all,
-      {.read = options.read, .range = std::nullopt, .classes = {}, .deskews = !options.has_moved_points, .on_scan_done = [&progress] {
-         progress.advance();
-       }});
+  PosedDrive drive(chosen.inputs, all,
+                   {.read = options.read,
+                    .range = std::nullopt,
+                    .classes = {},
+                    .deskews = !options.has_moved_points,
+                    .on_scan_done = [&progress] { progress.advance(); }});
   parking::DriveEvidence evidence(map, spaces, ground);
   drive.for_each([&](const PosedCloud& scan) {
     if (later.date.empty() && !scan.cloud.times.empty()) later.date = date_of_time(scan.cloud.times.front());
