@@ -30,7 +30,7 @@ struct SpaceEvidence {
   /// In its inner columns, 0.3 to 1.5 m above the ground, of things that are neither building, plant, vehicle, pole nor
   /// person, and that are not part of a vehicle that stands in another space.
   std::uint64_t thing_points = 0;
-  double thing_height = 0;             ///< of the highest of them [m above the ground]
+  double thing_height = 0;             ///< of the highest of their voxels, its mean [m above the ground]
   std::uint64_t rays_through = 0;      ///< that passed through a column or more
   std::optional<std::size_t> vehicle;  ///< that stands in it: number of the box
   double vehicle_share = 0;            ///< of the smaller one's area, that the box and the space have in common

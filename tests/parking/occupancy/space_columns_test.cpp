@@ -49,7 +49,9 @@ TEST(SpaceColumns, AreInnerWhereColumnsLieAllAround) {
       EXPECT_EQ(room.is_inner(i), num_near == 9);
       num_inner += room.is_inner(i) ? 1 : 0;
     }
-    if (space.outline.size() == 4) EXPECT_EQ(num_inner, 18U);
+    if (space.outline.size() == 4) {
+      EXPECT_EQ(num_inner, 18U);
+    }
   }
 }
 
