@@ -23,6 +23,10 @@ Json previous_of(const SpaceOccupancy& state) {
   return state.previous ? Json(text_of(*state.previous)) : Json(nullptr);
 }
 
+Json occupant_of(const SpaceOccupancy& state) {
+  return state.occupant ? Json(text_of(*state.occupant)) : Json(nullptr);
+}
+
 Json vehicle_of(const Vehicle& vehicle, const Eigen::Vector3d& anchor) {
   const Eigen::Vector3d center = vehicle.box.center + anchor;
   return {{"center", {to_millimetres(center.x()), to_millimetres(center.y()), to_millimetres(center.z())}},
@@ -44,14 +48,18 @@ Json state_of(const OccupancyRecord& record, std::size_t i) {
                {"previous_state", previous_of(state)},
                {"confidence", to_millimetres(state.confidence)},
                {"reason", text_or_null(state.reason)},
+               {"occupied_by", occupant_of(state)},
                {"vehicle_points", evidence.vehicle_points - evidence.neighbor_points},
                {"neighbor_points", evidence.neighbor_points},
+               {"thing_points", evidence.thing_points},
+               {"thing_height", to_millimetres(evidence.thing_height)},
                {"rays_through", evidence.rays_through},
                {"columns", evidence.num_columns},
                {"columns_passed", evidence.num_passed},
                {"columns_passed_low", evidence.num_passed_low},
                {"columns_with_vehicle", evidence.num_with_vehicle},
                {"columns_with_other", evidence.num_with_other},
+               {"inner_columns_with_thing", evidence.num_with_thing},
                {"days_in_state", value_or_null(days_in_state(space, state.state, record.date))},
                {"vehicle", nullptr}};
   if (evidence.vehicle) json["vehicle"] = vehicle_of(record.vehicles[*evidence.vehicle], record.frame.anchor);
@@ -114,7 +122,9 @@ std::string geojson_of(const OccupancyRecord& record, const GeoOptions& options)
                        {"state", text_of(state.state)},
                        {"previous_state", previous_of(state)},
                        {"confidence", to_millimetres(state.confidence)},
+                       {"occupied_by", occupant_of(state)},
                        {"vehicle_points", state.evidence.vehicle_points - state.evidence.neighbor_points},
+                       {"thing_points", state.evidence.thing_points},
                        {"rays_through", state.evidence.rays_through},
                        {"date", text_or_null(record.date)},
                        {"reason", text_or_null(state.reason)}};
@@ -130,7 +140,7 @@ std::string csv_of(const OccupancyRecord& record, const GeoOptions& options) {
   const GeoFrame globe(record.frame, options), metres(record.frame, {.coordinates = GeoCoordinates::kMap});
   std::string text =
       "id,state,previous_state,confidence,vehicle_points,rays_through,columns,columns_passed,kerb_side,angle,candidate,"
-      "length,width,heading,x,y,longitude,latitude,date,days_in_state,reason\r\n";
+      "length,width,heading,x,y,longitude,latitude,date,days_in_state,reason,occupied_by,thing_points\r\n";
   for (std::size_t i = 0; i < record.spaces.size(); ++i) {
     const ParkingSpace& space = record.spaces[i];
     const SpaceOccupancy& state = record.states[i];
@@ -158,7 +168,9 @@ std::string csv_of(const OccupancyRecord& record, const GeoOptions& options) {
                                   cell(on_globe[1]),
                                   cell(record.date),
                                   cell(value_or_null(days_in_state(space, state.state, record.date))),
-                                  cell(state.reason)};
+                                  cell(state.reason),
+                                  state.occupant ? std::string(text_of(*state.occupant)) : "",
+                                  cell(Json(state.evidence.thing_points))};
     bool is_first = true;
     for (const std::string& field : fields) {
       if (!is_first) text += ',';

@@ -10,7 +10,7 @@
 namespace vdbmap::parking {
 namespace {
 
-constexpr double kHalfSure = 10;  // vehicle points
+constexpr double kHalfSure = 10;  // points of a vehicle or a thing
 constexpr double kMillisecondsADay = 24.0 * 3600 * 1000;
 
 double share_of(std::size_t part, std::size_t whole) {
@@ -40,6 +40,14 @@ bool is_vehicle_there(const SpaceEvidence& evidence, const OccupancyRule& rule) 
   return evidence.vehicle_points - evidence.neighbor_points >= rule.vehicle_points &&
          evidence.num_with_vehicle >= rule.vehicle_columns && !has_passed_by(evidence, rule);
 }
+
+bool is_thing_there(const SpaceEvidence& evidence, const OccupancyRule& rule) {
+  return evidence.thing_points >= rule.thing_points && evidence.num_with_thing >= rule.thing_columns &&
+         evidence.thing_height >= rule.thing_height &&
+         static_cast<double>(evidence.thing_points) >= rule.thing_share * static_cast<double>(evidence.rays_through);
+}
+
+double sure_of(std::uint64_t points) { return static_cast<double>(points) / (static_cast<double>(points) + kHalfSure); }
 
 std::string reason_unknown(const SpaceEvidence& evidence, const OccupancyRule& rule) {
   std::ostringstream text;
@@ -76,7 +84,11 @@ void OccupancyRule::check() const {
   check_share("share of passed columns", passed_share);
   check_share("share of columns passed below windows", low_share);
   check_share("share of columns with other things", other_share);
+  check_share("share of points of a vehicle that stands", standing_share);
+  check_share("share of points of a thing that stands", thing_share);
 }
+
+std::string_view text_of(Occupant occupant) { return occupant == Occupant::kVehicle ? "vehicle" : "thing"; }
 
 SpaceOccupancy judge(const SpaceEvidence& evidence, const OccupancyRule& rule) {
   SpaceOccupancy result;
@@ -87,6 +99,7 @@ SpaceOccupancy judge(const SpaceEvidence& evidence, const OccupancyRule& rule) {
   }
   if (rule.as_paper) {
     result.state = evidence.vehicle_points > 0 ? SpaceState::kOccupied : SpaceState::kVacant;
+    if (evidence.vehicle_points > 0) result.occupant = Occupant::kVehicle;
     result.confidence = 1;
     return result;
   }
@@ -94,7 +107,12 @@ SpaceOccupancy judge(const SpaceEvidence& evidence, const OccupancyRule& rule) {
   const double passed = share_of(evidence.num_passed, evidence.num_columns);
   if (is_vehicle_there(evidence, rule)) {
     result.state = SpaceState::kOccupied;
-    result.confidence = static_cast<double>(own_points) / (static_cast<double>(own_points) + kHalfSure);
+    result.occupant = Occupant::kVehicle;
+    result.confidence = sure_of(own_points);
+  } else if (is_thing_there(evidence, rule)) {
+    result.state = SpaceState::kOccupied;
+    result.occupant = Occupant::kThing;
+    result.confidence = sure_of(evidence.thing_points);
   } else if (is_seen_through(evidence, rule) && !has_other_things(evidence, rule) && own_points <= rule.stray_points) {
     result.state = SpaceState::kVacant;
     result.confidence = std::max(0.0, passed - share_of(evidence.num_with_other, evidence.num_columns));

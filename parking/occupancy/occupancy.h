@@ -5,6 +5,7 @@
 #include <optional>
 #include <span>
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include "parking/occupancy/space_evidence.h"
@@ -25,23 +26,36 @@ struct OccupancyRule {
   /// Of the rays through a space whose columns are nearly all passed below windows, so many points at least, for it to
   /// be occupied: fewer are left by a vehicle that passed by.
   double standing_share = 0.02;
+  /// What is no vehicle takes a space too, as a motorcycle or a skip does, where no car could park for it: so many
+  /// points inside,
+  std::uint64_t thing_points = 20;
+  std::size_t thing_columns = 3;  ///< in so many inner columns,
+  double thing_height = 0.6;      ///< so high [m],
+  double thing_share = 0.02;      ///< and so many points of the rays through the space: it stands still
 
   /// Throws std::invalid_argument naming the value and what is allowed.
   void check() const;
 };
 
+/// What takes a space: a vehicle, or a thing that is not known to be one and beside which no car can park.
+enum class Occupant { kVehicle, kThing };
+
+/// "vehicle" or "thing".
+std::string_view text_of(Occupant occupant);
+
 /// The state of a space in an epoch.
 struct SpaceOccupancy {
   SpaceState state = SpaceState::kUnknown;
-  double confidence = 0;  ///< 0 to 1, see judge()
-  std::string reason;     ///< why it is unknown; else empty
+  std::optional<Occupant> occupant;  ///< where it is occupied
+  double confidence = 0;             ///< 0 to 1, see judge()
+  std::string reason;                ///< why it is unknown; else empty
   SpaceEvidence evidence;
   std::optional<SpaceState> previous;  ///< in the epoch before, where there was one
 };
 
-/// Judges a space by what an epoch says of it. The confidence of an occupied space is n / (n + 10) for n vehicle
-/// points, that of a vacant one the share of its columns that rays passed, less those in which something stands; that
-/// of an unknown one is 0. By the paper's rule nothing tells more or less sure answers apart: 1.
+/// Judges a space by what an epoch says of it. The confidence of an occupied space is n / (n + 10) for n points of the
+/// vehicle or the thing, that of a vacant one the share of its columns that rays passed, less those in which something
+/// stands; that of an unknown one is 0. By the paper's rule nothing tells more or less sure answers apart: 1.
 SpaceOccupancy judge(const SpaceEvidence& evidence, const OccupancyRule& rule = {});
 
 /// The occupancy of a street [0 to 1]: unknown spaces, which may be taken or not, make its interval wide.

@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "parking/occupancy/space_columns.h"
 
+#include <ranges>
+
 #include "parking/spaces/outline.h"
 
 namespace vdbmap::parking {
@@ -23,6 +25,18 @@ SpaceColumns::SpaceColumns(const ParkingSpace& space, const GroundPlane& ground)
     for (std::int32_t v = 0; v < count_v_; ++v) {
       const Eigen::Vector2d place = corner_ + (u + 0.5) * edge_u_ * along_ + (v + 0.5) * edge_v_ * across_;
       columns_.push_back(contains(space.outline, place) ? static_cast<std::int32_t>(num_columns_++) : kOutside);
+    }
+  }
+  is_inner_.resize(num_columns_);
+  for (std::int32_t u = 1; u + 1 < count_u_; ++u) {
+    for (std::int32_t v = 1; v + 1 < count_v_; ++v) {
+      const auto is_column = [&](int side) {
+        return columns_[static_cast<std::size_t>((u + side / 3 - 1) * count_v_ + v + side % 3 - 1)] != kOutside;
+      };
+      const std::int32_t column = columns_[static_cast<std::size_t>(u * count_v_ + v)];
+      if (column != kOutside) {
+        is_inner_[static_cast<std::size_t>(column)] = std::ranges::all_of(std::views::iota(0, 9), is_column) ? 1 : 0;
+      }
     }
   }
 }

@@ -38,6 +38,10 @@ class SpaceColumns {
   /// The column at a place of the frame; nothing outside of the space.
   std::optional<std::size_t> column_at(double u, double v) const;
 
+  /// Whether columns lie on all eight sides of it. A car that parks in the space stands there too: spaces are less than
+  /// a metre wider than cars.
+  bool is_inner(std::size_t column) const { return is_inner_[column] != 0; }
+
   /// The middle of each column [m, local frame, on the ground].
   std::vector<Eigen::Vector3d> middles() const;
 
@@ -68,6 +72,7 @@ class SpaceColumns {
   double edge_u_, edge_v_;             // [m]
   std::vector<std::int32_t> columns_;  // by u, then v: number of the column, or kOutside
   std::size_t num_columns_ = 0;
+  std::vector<std::uint8_t> is_inner_;  // by column
 };
 
 /// The part of a line from 0 to 1 that lies in a slab.

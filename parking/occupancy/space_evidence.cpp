@@ -97,6 +97,7 @@ struct SeenVoxel {
   Eigen::Vector3d mean;
   std::uint32_t count;
   bool is_vehicle;
+  bool is_thing;  // of the class that has no name
 };
 
 const std::vector<std::int32_t>& labels_of(const VoxelLevel& level) {
@@ -142,7 +143,8 @@ std::vector<std::vector<SeenVoxel>> voxels_by_space(std::span<const std::optiona
     const bool is_vehicle = *surface == SurfaceClass::kVehicle || vehicles_before.has_near(voxel);
     const VoxelRecord& record = level.records()[number];
     for (const std::size_t space : near) {
-      voxels[space].push_back({mean_of(record, voxel, level.voxel_size()), record.count, is_vehicle});
+      voxels[space].push_back({mean_of(record, voxel, level.voxel_size()), record.count, is_vehicle,
+                               !is_vehicle && *surface == SurfaceClass::kOther});
     }
   });
   return voxels;
@@ -150,13 +152,18 @@ std::vector<std::vector<SeenVoxel>> voxels_by_space(std::span<const std::optiona
 
 void count_voxels(std::size_t space, const SpaceColumns& room, std::span<const SeenVoxel> voxels,
                   std::span<const Standing* const> near, SpaceEvidence& evidence) {
-  std::vector<std::uint8_t> has_vehicle(room.size()), has_other(room.size());
+  std::vector<std::uint8_t> has_vehicle(room.size()), has_other(room.size()), has_thing(room.size());
   for (const SeenVoxel& voxel : voxels) {
     const Eigen::Vector3d place = room.in_frame(voxel.mean);
     const std::optional<std::size_t> column = room.column_at(place.x(), place.y());
     if (!column) continue;
     if (!voxel.is_vehicle) {
-      if (place.z() > SpaceColumns::kLow && place.z() < SpaceColumns::kHigh) has_other[*column] = 1;
+      if (place.z() < SpaceColumns::kLow || place.z() > SpaceColumns::kHigh) continue;
+      has_other[*column] = 1;
+      if (!voxel.is_thing || !room.is_inner(*column) || is_of_neighbor(voxel.mean.head<2>(), space, near)) continue;
+      has_thing[*column] = 1;
+      evidence.thing_points += voxel.count;
+      evidence.thing_height = std::max(evidence.thing_height, place.z());
       continue;
     }
     if (place.z() < kLowestVehicle || place.z() > kHighestVehicle) continue;
@@ -168,6 +175,7 @@ void count_voxels(std::size_t space, const SpaceColumns& room, std::span<const S
     }
   }
   evidence.num_with_vehicle = static_cast<std::size_t>(std::ranges::count(has_vehicle, 1));
+  evidence.num_with_thing = static_cast<std::size_t>(std::ranges::count(has_thing, 1));
   evidence.num_with_other = static_cast<std::size_t>(std::ranges::count(has_other, 1));
 }
 

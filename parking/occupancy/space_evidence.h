@@ -18,14 +18,19 @@ namespace vdbmap::parking {
 
 /// What an epoch says of a space.
 struct SpaceEvidence {
-  bool is_in_map = false;              ///< whether its ground is known: nothing is said of others
-  std::size_t num_columns = 0;         ///< of its room, see SpaceColumns
-  std::size_t num_passed = 0;          ///< of these, rays passed through
-  std::size_t num_passed_low = 0;      ///< of these, below the windows of cars: 0.3 to 0.9 m above the ground
-  std::size_t num_with_vehicle = 0;    ///< of these, with points of a vehicle, up to 2.5 m above the ground
-  std::size_t num_with_other = 0;      ///< of these, with points of other things
-  std::uint64_t vehicle_points = 0;    ///< inside, 0.2 to 2.5 m above the ground
-  std::uint64_t neighbor_points = 0;   ///< of these, of vehicles that stand in another space
+  bool is_in_map = false;             ///< whether its ground is known: nothing is said of others
+  std::size_t num_columns = 0;        ///< of its room, see SpaceColumns
+  std::size_t num_passed = 0;         ///< of these, rays passed through
+  std::size_t num_passed_low = 0;     ///< of these, below the windows of cars: 0.3 to 0.9 m above the ground
+  std::size_t num_with_vehicle = 0;   ///< of these, with points of a vehicle, up to 2.5 m above the ground
+  std::size_t num_with_other = 0;     ///< of these, with points of other things
+  std::size_t num_with_thing = 0;     ///< of the inner ones, with points of things, see thing_points
+  std::uint64_t vehicle_points = 0;   ///< inside, 0.2 to 2.5 m above the ground
+  std::uint64_t neighbor_points = 0;  ///< of these, of vehicles that stand in another space
+  /// In its inner columns, 0.3 to 1.5 m above the ground, of things that are neither building, plant, vehicle, pole nor
+  /// person, and that are not part of a vehicle that stands in another space.
+  std::uint64_t thing_points = 0;
+  double thing_height = 0;             ///< of the highest of their voxels, its mean [m above the ground]
   std::uint64_t rays_through = 0;      ///< that passed through a column or more
   std::optional<std::size_t> vehicle;  ///< that stands in it: number of the box
   double vehicle_share = 0;            ///< of the smaller one's area, that the box and the space have in common

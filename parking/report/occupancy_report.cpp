@@ -324,6 +324,7 @@ void add_sections(Pages& pages, const Drawing& drawing) {
 }
 
 std::string short_reason(const SpaceOccupancy& state) {
+  if (state.occupant == Occupant::kThing) return "no vehicle, a thing";
   if (state.state != SpaceState::kUnknown) return "";
   const SpaceEvidence& evidence = state.evidence;
   if (!evidence.is_in_map) return "no ground in the map";

@@ -49,6 +49,9 @@ OccupancyRecord sample_record() {
     state.evidence.vehicle_points = 12;
     state.evidence.neighbor_points = 2;
     state.evidence.rays_through = 7;
+    if (i == 0) state.occupant = Occupant::kVehicle;
+    if (i == 3) state.occupant = Occupant::kThing;
+    state.evidence.thing_points = i == 3 ? 31 : 0;
     record.spaces.push_back(std::move(space));
     record.states.push_back(state);
   }
@@ -173,6 +176,11 @@ TEST(OccupancyFiles, GeoJsonHasTheNamesThatProgramsLookFor) {
   EXPECT_EQ(properties["confidence"], 0.75);
   EXPECT_EQ(properties["vehicle_points"], 10);
   EXPECT_EQ(properties["rays_through"], 7);
+  EXPECT_EQ(properties["occupied_by"], "vehicle");
+  EXPECT_EQ(properties["thing_points"], 0);
+  EXPECT_TRUE(json["features"][1]["properties"]["occupied_by"].is_null());
+  EXPECT_EQ(json["features"][3]["properties"]["occupied_by"], "thing");
+  EXPECT_EQ(json["features"][3]["properties"]["thing_points"], 31);
   EXPECT_EQ(properties["length"], 5.555);
   EXPECT_EQ(properties["width"], 2.0);
   EXPECT_EQ(properties["heading"], 0.0);
@@ -192,6 +200,8 @@ TEST(OccupancyFiles, JsonCountsTheStreetWithoutCandidates) {
   EXPECT_DOUBLE_EQ(json["occupancy"]["low"].get<double>(), 0.4);
   EXPECT_DOUBLE_EQ(json["occupancy"]["high"].get<double>(), 0.8);
   EXPECT_EQ(json["spaces"].size(), 6U);
+  EXPECT_EQ(json["spaces"][3]["occupied_by"], "thing");
+  EXPECT_TRUE(json["spaces"][2]["occupied_by"].is_null());
 }
 
 // Fields of a line as RFC 4180 has them.

@@ -57,6 +57,7 @@ TEST(Occupancy, IsOccupiedWhereAVehicleStands) {
   const std::vector<SpaceEvidence> evidence = look(ground_alone(), now, {});
   EXPECT_EQ(judge(evidence[1]).state, SpaceState::kOccupied);
   EXPECT_EQ(evidence[1].vehicle, 0U);
+  EXPECT_EQ(judge(evidence[1]).occupant, Occupant::kVehicle);
   EXPECT_GT(evidence[1].vehicle_share, 0.9);
   EXPECT_GT(judge(evidence[1]).confidence, 0.9);
   EXPECT_EQ(judge(evidence[0]).state, SpaceState::kUnknown);
@@ -79,12 +80,72 @@ TEST(Occupancy, RaysOverBonnetsAndThroughWindowsAreNoProof) {
   EXPECT_EQ(judge(evidence[1]).state, SpaceState::kUnknown);
 }
 
-TEST(Occupancy, AThingThatIsNoVehicleLeavesItUnknown) {
-  LabelledStreet now = ground_alone();
-  for (double z = 0.2; z < 1.3; z += 0.05) now.add_patch({5, -0.8, z}, {2.5, 1.6}, SurfaceClass::kOther);
+// A body of a class from `low` on, from the ground up to `top` [m].
+LabelledStreet with_thing(const Eigen::Vector2d& low, const Eigen::Vector2d& size, double top, SurfaceClass surface) {
+  LabelledStreet street = ground_alone();
+  for (double z = 0.2; z < top; z += 0.05) street.add_patch({low.x(), low.y(), z}, size, surface);
+  return street;
+}
+
+TEST(Occupancy, AThingBesideWhichNoCarCanParkTakesIt) {
+  const LabelledStreet now = with_thing({5, -0.4}, {2, 0.8}, 1.1, SurfaceClass::kOther);
   const std::vector<SpaceEvidence> evidence = look(ground_alone(), now, rays_across(6, 0.5, 1.3));
+  EXPECT_EQ(evidence[1].vehicle_points, 0U);
+  // The mean of voxels below its top, over a ground that is known to half a voxel.
+  EXPECT_NEAR(evidence[1].thing_height, 1.05, 0.1);
+  const SpaceOccupancy state = judge(evidence[1]);
+  EXPECT_EQ(state.state, SpaceState::kOccupied);
+  EXPECT_EQ(state.occupant, Occupant::kThing);
+  const auto points = static_cast<double>(evidence[1].thing_points);
+  EXPECT_DOUBLE_EQ(state.confidence, points / (points + 10));
+  EXPECT_EQ(judge(evidence[0]).occupant, std::nullopt);
+}
+
+TEST(Occupancy, PlantsLeaveItUnknown) {
+  const LabelledStreet now = with_thing({5, -0.8}, {2.5, 1.6}, 1.3, SurfaceClass::kVegetation);
+  const std::vector<SpaceEvidence> evidence = look(ground_alone(), now, rays_across(6, 0.5, 1.3));
+  EXPECT_EQ(evidence[1].thing_points, 0U);
   EXPECT_EQ(judge(evidence[1]).state, SpaceState::kUnknown);
   EXPECT_EQ(judge(evidence[1]).reason, "something stands there that is not known to be a vehicle");
+}
+
+// What lies flat, or along the kerb, leaves room for a car.
+TEST(Occupancy, AThingThatLeavesRoomForACarDoesNotTakeIt) {
+  for (const LabelledStreet& now : {with_thing({5, -0.4}, {2, 0.8}, 0.5, SurfaceClass::kOther),
+                                    with_thing({3.3, 0.55}, {5, 0.4}, 1.2, SurfaceClass::kOther)}) {
+    EXPECT_EQ(judge(look(ground_alone(), now, rays_across(6, 0.5, 1.3))[1]).state, SpaceState::kUnknown);
+  }
+}
+
+TEST(Occupancy, AThingThatPassedByDoesNotTakeIt) {
+  const LabelledStreet now = with_thing({5, -0.4}, {2, 0.8}, 1.1, SurfaceClass::kOther);
+  SpaceEvidence space = look(ground_alone(), now, rays_across(6, 0.5, 1.3))[1];
+  space.rays_through = 100 * space.thing_points;
+  EXPECT_EQ(judge(space).state, SpaceState::kUnknown);
+}
+
+TEST(Occupancy, EachBoundOfThingsCounts) {
+  const OccupancyRule rule;
+  SpaceEvidence space;
+  space.is_in_map = true;
+  space.num_columns = 44;
+  space.thing_points = rule.thing_points;
+  space.num_with_thing = rule.thing_columns;
+  space.thing_height = rule.thing_height;
+  space.rays_through = static_cast<std::uint64_t>(static_cast<double>(rule.thing_points) / rule.thing_share);
+  EXPECT_EQ(judge(space).occupant, Occupant::kThing);
+  SpaceEvidence less = space;
+  --less.thing_points;
+  EXPECT_EQ(judge(less).state, SpaceState::kUnknown);
+  less = space;
+  --less.num_with_thing;
+  EXPECT_EQ(judge(less).state, SpaceState::kUnknown);
+  less = space;
+  less.thing_height -= 0.01;
+  EXPECT_EQ(judge(less).state, SpaceState::kUnknown);
+  less = space;
+  less.rays_through += 1;
+  EXPECT_EQ(judge(less).state, SpaceState::kUnknown);
 }
 
 TEST(Occupancy, AVehicleThatStoodThereBeforeIsKnownAgain) {
@@ -207,6 +268,7 @@ TEST(StreetTurnover, SaysForHowLongASpaceIsAsItIs) {
 
 TEST(OccupancyRule, RefusesSharesThatAreNone) {
   EXPECT_THROW(OccupancyRule{.passed_share = 1.5}.check(), std::invalid_argument);
+  EXPECT_THROW(OccupancyRule{.thing_share = -0.1}.check(), std::invalid_argument);
   EXPECT_NO_THROW(OccupancyRule{}.check());
 }
 

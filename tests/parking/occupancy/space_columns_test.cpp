@@ -36,6 +36,25 @@ TEST(SpaceColumns, AreThoseWhoseMiddlesLieInside) {
             SpaceColumns(space_of_outline({{0, 0}, {6, 1}, {5.3, 5.2}, {-0.7, 4.2}}), {}).size());
 }
 
+// Of 11 by 4 columns 9 by 2; of an outline with a corner cut out, those that have eight neighbours.
+TEST(SpaceColumns, AreInnerWhereColumnsLieAllAround) {
+  for (const ParkingSpace& space : {l_shaped(), space_of_outline({{0, 0}, {5.6, 0}, {5.6, 2}, {0, 2}})}) {
+    const SpaceColumns room(space, {});
+    const std::vector<Eigen::Vector3d> middles = room.middles();
+    const double reach = 1.1 * room.edges().norm();
+    std::size_t num_inner = 0;
+    for (std::size_t i = 0; i < room.size(); ++i) {
+      const auto num_near = std::ranges::count_if(
+          middles, [&](const Eigen::Vector3d& middle) { return (middle - middles[i]).head<2>().norm() < reach; });
+      EXPECT_EQ(room.is_inner(i), num_near == 9);
+      num_inner += room.is_inner(i) ? 1 : 0;
+    }
+    if (space.outline.size() == 4) {
+      EXPECT_EQ(num_inner, 18U);
+    }
+  }
+}
+
 TEST(SpaceColumns, ArePassedWhereShortStepsSaySo) {
   std::mt19937 random(7);
   std::uniform_real_distribution<double> wide(-8, 12), height(1, 6);
