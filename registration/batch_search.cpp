@@ -8,7 +8,7 @@
 #include <Eigen/Eigenvalues>
 
 #include "registration/map_window.h"
-#include "vdbmap/core/parallel.h"
+#include "vdbmap/core/parallel_tasks.h"
 
 namespace vdbmap::registration {
 namespace {
@@ -95,7 +95,7 @@ Candidates places_of(std::span<const PoseHypothesis> hypotheses, const Search& s
     const std::size_t count = std::min(hypotheses.size() - begin, kMaxPlaces - places.size());
     if (begin > 0 && !is_worth_a_try(hypotheses[begin], hypotheses[0], places.size())) break;
     Candidates aligned(count);
-    parallel_for(count, [&](std::size_t i) { aligned[i] = align_on_coarser_levels(hypotheses[begin + i], search); });
+    parallel_tasks(count, [&](std::size_t i) { aligned[i] = align_on_coarser_levels(hypotheses[begin + i], search); });
     places.insert(places.end(), aligned.begin(), aligned.end());
     places = distinct_places(std::move(places), search.center);
     begin += count;
@@ -124,7 +124,7 @@ Candidates align_contenders(Candidates places, const Search& search) {
     const std::span<BatchCandidate> waiting = std::span(places).subspan(num_aligned);
     const std::size_t count = count_next(contenders, waiting, search.verdict);
     if (count == 0) return contenders;
-    parallel_for(count, [&](std::size_t i) { align_on_all_levels(waiting[i], search); });
+    parallel_tasks(count, [&](std::size_t i) { align_on_all_levels(waiting[i], search); });
     contenders.insert(contenders.end(), waiting.begin(), waiting.begin() + static_cast<std::ptrdiff_t>(count));
     contenders = distinct_places(std::move(contenders), search.center);
     num_aligned += count;

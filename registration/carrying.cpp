@@ -5,7 +5,7 @@
 #include <optional>
 #include <tuple>
 
-#include "vdbmap/core/parallel.h"
+#include "vdbmap/core/parallel_tasks.h"
 
 namespace vdbmap::registration {
 namespace {
@@ -46,7 +46,7 @@ bool is_better(const ScanPlace& a, const ScanPlace& b) {
 std::vector<ScanPlace> carry_places(std::span<const ScanPlace> found, std::span<const PathPose> path,
                                     const TrackScan& track, const CarryOptions& options) {
   std::array<std::vector<ScanPlace>, 2> ways;
-  parallel_for(ways.size(), [&](std::size_t i) { ways[i] = carried_one_way(found, path, track, options, i == 0); });
+  parallel_tasks(ways.size(), [&](std::size_t i) { ways[i] = carried_one_way(found, path, track, options, i == 0); });
   auto& [places, backward] = ways;
   for (std::size_t i = 0; i < places.size(); ++i) {
     if (is_better(backward[i], places[i])) places[i] = backward[i];

@@ -8,7 +8,7 @@
 #include "registration/fine/scan_sample.h"
 #include "registration/map_window.h"
 #include "registration/odometry/deskew.h"
-#include "vdbmap/core/parallel.h"
+#include "vdbmap/core/parallel_tasks.h"
 
 namespace vdbmap::registration {
 
@@ -111,7 +111,7 @@ std::optional<TimedPose> GuidedLocalizer::neighbour(std::size_t number, bool is_
 // The scans were aligned with the motion before them at best: all once more with that around them.
 void GuidedLocalizer::deskew_all() {
   std::vector<std::optional<LocalizedScan>> results(scans_.size());
-  parallel_for(scans_.size(), [&](std::size_t i) {
+  parallel_tasks(scans_.size(), [&](std::size_t i) {
     if (!tells_motion(scans_[i])) return;
     const std::optional<TimedPose> before = neighbour(i, true);
     const std::optional<TimedPose> after = neighbour(i, false);

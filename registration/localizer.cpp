@@ -13,7 +13,7 @@
 #include "registration/map_window.h"
 #include "registration/odometry_path.h"
 #include "registration/percent.h"
-#include "vdbmap/core/parallel.h"
+#include "vdbmap/core/parallel_tasks.h"
 
 namespace vdbmap::registration {
 namespace {
@@ -143,7 +143,7 @@ std::vector<ScanPlace> Localizer::State::places_of_scans() const {
 std::vector<AlignedScan> Localizer::State::align_each(std::span<const ScanPlace> places) const {
   const std::vector<double> drift = drift_in_batches();
   std::vector<AlignedScan> aligned(scans.size());
-  parallel_for(scans.size(), [&](std::size_t i) {
+  parallel_tasks(scans.size(), [&](std::size_t i) {
     aligned[i] = {places[i], scans[i].motion, {}, drift[i]};
     if (places[i].is_known()) aligned[i].fine = align(i, places[i].map_from_scan);
   });
@@ -187,7 +187,7 @@ SequenceResult Localizer::State::locate_all() {
 
   SequenceResult result;
   result.scans.resize(scans.size());
-  parallel_for(scans.size(), [&](std::size_t i) {
+  parallel_tasks(scans.size(), [&](std::size_t i) {
     if (!aligned[i].place.is_known()) return;
     result.scans[i] = judge(i, first_point_of(i, aligned, path, middles), middles[i], aligned[i].fine);
   });

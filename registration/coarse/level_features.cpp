@@ -14,7 +14,7 @@
 #include <vector>
 
 #include "vdbmap/core/map_tiles.h"
-#include "vdbmap/core/parallel.h"
+#include "vdbmap/core/parallel_tasks.h"
 #include "vdbmap/store/tile_cache.h"
 
 namespace vdbmap::registration {
@@ -118,7 +118,7 @@ LevelFeatures features_of_city(const City& city, std::span<const CityTile> tiles
   LevelFeatures made{fitted_points(level), FpfhMatrix(kFpfhBins, static_cast<Eigen::Index>(level.size()))};
   std::vector<std::optional<std::uint64_t>> keys(tiles.size());
   std::vector<std::uint8_t> is_kept(tiles.size());
-  parallel_for(tiles.size(), [&](std::size_t i) {
+  parallel_tasks(tiles.size(), [&](std::size_t i) {
     const std::vector<Records>& own = records.at(tiles[i].id);
     const std::optional<std::uint64_t> neighborhood = neighborhood_hash(city.manifest, tiles, tiles[i]);
     if (neighborhood) keys[i] = key_of(*neighborhood, reach);
@@ -136,7 +136,7 @@ LevelFeatures features_of_city(const City& city, std::span<const CityTile> tiles
   const LevelFeatures of_part = features_of_level(part, reach);
   const SurfacePoints unturned = fitted_points(part);
   const TileRecords part_records = records_by_tile(part);
-  parallel_for(tiles.size(), [&](std::size_t i) {
+  parallel_tasks(tiles.size(), [&](std::size_t i) {
     if (is_kept[i]) return;
     const std::vector<KeptVoxel> voxels = voxels_in(part_records.at(tiles[i].id), of_part, unturned);
     set_voxels(records.at(tiles[i].id), voxels, made);

@@ -11,7 +11,7 @@
 
 #include "vdbmap/core/error.h"
 #include "vdbmap/core/map_tiles.h"
-#include "vdbmap/core/parallel.h"
+#include "vdbmap/core/parallel_tasks.h"
 #include "vdbmap/io/vdb/map_file.h"
 #include "vdbmap/io/vdb/vdb_checksum.h"
 
@@ -87,7 +87,7 @@ VoxelMap load_tiles(City& city, const TileChoice& is_wanted, const Load& load) {
   for (int state = 0; state < kMostStates; ++state) {
     const std::vector<CityTile> tiles = chosen_tiles(city.manifest, is_wanted);
     std::vector<std::optional<VoxelMap>> loaded(tiles.size());
-    parallel_for(tiles.size(), [&](std::size_t i) { loaded[i] = load(tiles[i]); });
+    parallel_tasks(tiles.size(), [&](std::size_t i) { loaded[i] = load(tiles[i]); });
     const auto missing = std::ranges::find(loaded, false, &std::optional<VoxelMap>::has_value);
     if (missing == loaded.end()) {
       std::vector<VoxelMap> maps;

@@ -11,7 +11,7 @@
 
 #include "vdbmap/core/error.h"
 #include "vdbmap/core/map_tiles.h"
-#include "vdbmap/core/parallel.h"
+#include "vdbmap/core/parallel_tasks.h"
 
 namespace vdbmap {
 namespace {
@@ -67,7 +67,7 @@ VoxelMap MapWindows::CityWindows::tile(std::size_t number) const {
 
 VoxelMap MapWindows::CityWindows::load(const std::vector<std::size_t>& numbers) const {
   std::vector<std::optional<VoxelMap>> loaded(numbers.size());
-  parallel_for(numbers.size(), [&](std::size_t i) { loaded[i] = tile(numbers[i]); });
+  parallel_tasks(numbers.size(), [&](std::size_t i) { loaded[i] = tile(numbers[i]); });
   std::vector<VoxelMap> parts;
   for (std::optional<VoxelMap>& part : loaded) parts.push_back(std::move(*part));
   if (parts.empty()) return empty_map(city.manifest.layout.frame, city.manifest.layout.voxel_sizes);

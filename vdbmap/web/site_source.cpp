@@ -8,7 +8,7 @@
 
 #include "vdbmap/core/error.h"
 #include "vdbmap/core/map_tiles.h"
-#include "vdbmap/core/parallel.h"
+#include "vdbmap/core/parallel_tasks.h"
 #include "vdbmap/io/vdb/map_file.h"
 #include "vdbmap/store/city_window.h"
 
@@ -36,7 +36,7 @@ VoxelLevel load_window_of(const City& city, const openvdb::CoordBBox& box) {
     if (reaches_into(tile.id, box, per_tile)) tiles.push_back(&tile);
   }
   std::vector<VoxelMap> parts(tiles.size());
-  parallel_for(tiles.size(), [&](std::size_t i) { parts[i] = load_part(city, *tiles[i], box); });
+  parallel_tasks(tiles.size(), [&](std::size_t i) { parts[i] = load_part(city, *tiles[i], box); });
   std::erase_if(parts, [](const VoxelMap& part) { return part.finest().size() == 0; });
   if (parts.empty()) return {city.manifest.layout.voxel_sizes.front(), {}, {}};
   VoxelMap whole = parts.size() == 1 ? std::move(parts.front()) : splice(parts);
