@@ -22,7 +22,7 @@ std::vector<std::filesystem::path> candidates(const std::string& file) {
 
 }  // namespace
 
-const void* load_module(const std::string& file, const char* entry, const char* what) {
+void* find_in_module(const std::string& file, const char* entry, const char* what) {
   std::string reason;
   for (const std::filesystem::path& path : candidates(file)) {
     void* module = ::dlopen(path.c_str(), RTLD_NOW | RTLD_LOCAL);
@@ -30,9 +30,8 @@ const void* load_module(const std::string& file, const char* entry, const char* 
       reason = ::dlerror();
       continue;
     }
-    using Entry = const void* (*)();
-    const auto function = reinterpret_cast<Entry>(::dlsym(module, entry));
-    if (function != nullptr) return function();
+    void* function = ::dlsym(module, entry);
+    if (function != nullptr) return function;
     reason = path.string() + " is of another version";
   }
   throw std::runtime_error(std::string("cannot load ") + what + ": " + reason);
