@@ -1,8 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "parking/occupancy/space_columns.h"
 
-#include <ranges>
-
 #include "parking/spaces/outline.h"
 
 namespace vdbmap::parking {
@@ -30,13 +28,13 @@ SpaceColumns::SpaceColumns(const ParkingSpace& space, const GroundPlane& ground)
   is_inner_.resize(num_columns_);
   for (std::int32_t u = 1; u + 1 < count_u_; ++u) {
     for (std::int32_t v = 1; v + 1 < count_v_; ++v) {
-      const auto is_column = [&](int side) {
-        return columns_[static_cast<std::size_t>((u + side / 3 - 1) * count_v_ + v + side % 3 - 1)] != kOutside;
-      };
-      const std::int32_t column = columns_[static_cast<std::size_t>(u * count_v_ + v)];
-      if (column != kOutside) {
-        is_inner_[static_cast<std::size_t>(column)] = std::ranges::all_of(std::views::iota(0, 9), is_column) ? 1 : 0;
+      std::int32_t num_there = 0;  // of it and its eight neighbours
+      for (std::int32_t side = 0; side < 9; ++side) {
+        const std::int32_t near = columns_[static_cast<std::size_t>((u + side / 3 - 1) * count_v_ + v + side % 3 - 1)];
+        num_there += near != kOutside ? 1 : 0;
       }
+      const std::int32_t column = columns_[static_cast<std::size_t>(u * count_v_ + v)];
+      if (column != kOutside) is_inner_[static_cast<std::size_t>(column)] = num_there == 9 ? 1 : 0;
     }
   }
 }

@@ -1,6 +1,9 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "tools/simulator/things/garden_things.h"
 
+#include <algorithm>
+#include <cmath>
+
 #include "tools/simulator/things/plants.h"
 #include "tools/simulator/things/shrub.h"
 
@@ -13,15 +16,16 @@ using Color = Eigen::Vector3f;
 }  // namespace
 
 void draw_bank(const Site& site) {
+  constexpr double kReach = 0.8;  // [m] beyond the room, at most
   const Brush grass = site.brush.with(site.standard().grass);
   const double height = site.random.uniform(0.3, 1.1);
   const std::size_t count = 1 + site.random.index(3);
   for (std::size_t i = 0; i < count; ++i) {
-    const Point middle(site.length * (site.random.uniform(0.3, 0.7) - 0.5), site.random.normal(0, 0.15), -0.1);
-    add_ellipsoid(grass, middle,
-                  {site.length * site.random.uniform(0.25, 0.5), site.width * site.random.uniform(0.35, 0.5),
-                   0.1 + height * site.random.uniform(0.6, 1)},
-                  24);
+    const double y = site.random.normal(0, 0.15);
+    const double x = site.length * (site.random.uniform(0.3, 0.7) - 0.5);
+    const double half = std::min(site.length * site.random.uniform(0.25, 0.5), site.length / 2 + kReach - std::abs(x));
+    const double width = site.width * site.random.uniform(0.35, 0.5);
+    add_ellipsoid(grass, {x, y, -0.1}, {half, width, 0.1 + height * site.random.uniform(0.6, 1)}, 24);
   }
   if (site.random.chance(0.5)) draw_tall_grass(site);
 }

@@ -14,8 +14,7 @@ void* find_in_module(const std::string& file, const char* entry, const char* wha
 /// What the function `entry` of a module returns: a pointer to Table.
 template <typename Table>
 const Table* load_module(const std::string& file, const char* entry, const char* what) {
-  using Entry = const Table* (*)();
-  return reinterpret_cast<Entry>(find_in_module(file, entry, what))();
+  return reinterpret_cast<const Table* (*)()>(find_in_module(file, entry, what))();
 }
 
 }  // namespace vdbmap
