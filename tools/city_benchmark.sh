@@ -30,20 +30,7 @@ place_street() {
   [[ -e $file ]] && return
   mkdir -p "$work/survey"
   cp "$work/street$(($1 % 4 + 1))/epoch0/cloud.las" "$file"
-  python3 - "$file" "$1" << 'PYTHON'
-import struct
-import sys
-
-path, number = sys.argv[1], int(sys.argv[2])
-shift = (320 * (number // 8), 320 * (number % 8), 3 * (number % 5))
-with open(path, 'r+b') as file:
-    for axis in range(3):
-        for place in (155 + 8 * axis, 179 + 16 * axis, 187 + 16 * axis):  # offset, largest, smallest coordinate
-            file.seek(place)
-            value, = struct.unpack('<d', file.read(8))
-            file.seek(place)
-            file.write(struct.pack('<d', value + shift[axis]))
-PYTHON
+  python3 tools/shift_las.py "$file" $((320 * ($1 / 8))) $((320 * ($1 % 8))) $((3 * ($1 % 5)))
 }
 
 # A command's wall time [s], processor time [s] and peak [MB].

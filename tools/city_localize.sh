@@ -25,8 +25,10 @@ place_survey() {
   python3 - "$@" "$work/first/street.json" << 'PYTHON'
 import json
 import math
-import struct
 import sys
+
+sys.path.insert(0, 'tools')
+from shift_las import shift
 
 
 def middle(path):
@@ -39,18 +41,12 @@ def middle(path):
 
 cloud, street, place, first = sys.argv[1:]
 if ',' in place:
-    shift = [float(value) for value in place.split(',')]
+    by = [float(value) for value in place.split(',')]
 else:
     number = int(place)
     cell = (400 * (number // 8), 400 * (number % 8), 3 * (number % 5))
-    shift = [round(a + c - b) for a, b, c in zip(middle(first), middle(street), cell)]
-with open(cloud, 'r+b') as file:
-    for axis in range(3):
-        for offset in (155 + 8 * axis, 179 + 16 * axis, 187 + 16 * axis):  # offset, largest, smallest coordinate
-            file.seek(offset)
-            value, = struct.unpack('<d', file.read(8))
-            file.seek(offset)
-            file.write(struct.pack('<d', value + shift[axis]))
+    by = [round(a + c - b) for a, b, c in zip(middle(first), middle(street), cell)]
+shift(cloud, by)
 PYTHON
 }
 

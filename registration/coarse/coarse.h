@@ -16,13 +16,12 @@ namespace vdbmap::registration {
 
 /// How a combined scan is looked for in a map without a first guess.
 struct CoarseOptions {
-  double feature_radius = 5;         ///< [m] of the neighbourhood that a feature describes, at most 32 voxels
-  double orientation_radius = 7;     ///< [m] of the surroundings that tell a normal's side, at most 32 voxels
-  std::size_t num_keypoints = 1500;  ///< most distinctive features of the scan that are matched
-  double map_share = 0.35;           ///< of the map's features, the most distinctive ones, that can be matched
-  int num_nearest = 3;               ///< features of the map considered for each of the scan
-  std::size_t max_whole =
-      8000;  ///< features that can be matched of a map that is searched as one; a larger one in parts
+  double feature_radius = 5;           ///< [m] of the neighbourhood that a feature describes, at most 32 voxels
+  double orientation_radius = 7;       ///< [m] of the surroundings that tell a normal's side, at most 32 voxels
+  std::size_t num_keypoints = 1500;    ///< most distinctive features of the scan that are matched
+  double map_share = 0.35;             ///< of the map's features, the most distinctive ones, that can be matched
+  int num_nearest = 3;                 ///< features of the map considered for each of the scan
+  std::size_t max_whole = 8000;        ///< features to match of a map that is searched as one; a larger one in parts
   std::size_t max_part_matches = 500;  ///< of each part; as ConsensusOptions::max_matches of a map searched as one
   ConsensusOptions consensus;
 

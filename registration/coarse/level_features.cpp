@@ -100,9 +100,12 @@ VoxelLevel around_tiles(const VoxelLevel& level, const MapFrame& frame, const st
   return std::move(splice(parts).levels.front());
 }
 
+// Raised where features are computed otherwise: what was kept before is then not used.
+constexpr std::uint64_t kVersion = 1;
+
 std::uint64_t key_of(std::uint64_t neighborhood, const FeatureReach& reach) {
   const auto quanta = [](double metres) { return static_cast<std::uint64_t>(metres * 1e6); };
-  return neighborhood ^ (quanta(reach.orientation_radius) * 0x9E3779B97F4A7C15u) ^
+  return neighborhood ^ (kVersion * 0x165667B19E3779F9u) ^ (quanta(reach.orientation_radius) * 0x9E3779B97F4A7C15u) ^
          (quanta(reach.feature_radius) * 0xC2B2AE3D27D4EB4Fu);
 }
 

@@ -178,6 +178,7 @@ TEST_F(TileCommand, ScriptsQuoteWhatTheyName) {
   const std::string script = vdbmap({"tile", "submit", odd + ".job", "--slurm", "--print"}).out;
   EXPECT_NE(script.find("tile map '" + path("it'\\''s $(touch x) city.job") + "' \"${numbers"), std::string::npos)
       << script;
+  EXPECT_NE(script.find(" '" + path("it'\\''s $(touch x) city.job/slurm/map.sh") + "'\n"), std::string::npos) << script;
 }
 
 // One source in one tile: every call of all stages is met, in as short a time as can be.

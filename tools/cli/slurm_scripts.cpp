@@ -2,6 +2,8 @@
 #include "tools/cli/slurm_scripts.h"
 
 #include <algorithm>
+#include <cctype>
+#include <string_view>
 
 #include <spdlog/fmt/fmt.h>
 
@@ -11,13 +13,6 @@ namespace vdbmap::cli {
 namespace {
 
 constexpr std::size_t kMostTasks = 1000;  // MaxArraySize is 1001 by default
-
-// A word for the shell, whatever is in it.
-std::string shell_word(const std::string& text) {
-  std::string word = "'";
-  for (const char c : text) word += c == '\'' ? std::string("'\\''") : std::string(1, c);
-  return word + "'";
-}
 
 // Numbers of sources or buckets, those of a task in one text: "0-3,7".
 using Tasks = std::vector<std::string>;
@@ -86,6 +81,16 @@ SlurmStage array_stage(const Job& job, const std::string& stage, const Tasks& ta
 }
 
 }  // namespace
+
+std::string shell_word(const std::string& text) {
+  const auto is_plain = [](unsigned char c) {
+    return std::isalnum(c) || std::string_view("_./:=,%@+-").find(c) != std::string_view::npos;
+  };
+  if (!text.empty() && std::ranges::all_of(text, is_plain)) return text;
+  std::string word = "'";
+  for (const char c : text) word += c == '\'' ? std::string("'\\''") : std::string(1, c);
+  return word + "'";
+}
 
 std::vector<SlurmStage> slurm_stages(const Job& job, const JobStatus& status, const SlurmOptions& options) {
   std::vector<SlurmStage> stages;

@@ -11,6 +11,9 @@
 
 namespace vdbmap::cli {
 
+/// A word for the shell, whatever is in it; in quotes where it needs them.
+std::string shell_word(const std::string& text);
+
 /// How the tasks of a job run on a cluster.
 struct SlurmOptions {
   std::filesystem::path program;  ///< the command vdbmap, at the same place on all nodes
@@ -29,8 +32,8 @@ struct SlurmStage {
 };
 
 /// The stages that are left to do, each to be submitted once the one before is done. Sources are put together, since
-/// starting a task costs a cluster a fifth of a second; 1000 tasks an array at most. A
-/// task that could not read or write, or was killed, is tried up to three times more.
+/// starting a task costs a cluster a fifth of a second; 1000 tasks an array at most. A task that could not read or
+/// write, or was killed, is tried up to three times more.
 std::vector<SlurmStage> slurm_stages(const Job& job, const JobStatus& status, const SlurmOptions& options);
 
 }  // namespace vdbmap::cli

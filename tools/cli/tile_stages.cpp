@@ -248,6 +248,7 @@ void print_finished(const Job& job, const JobFinished& finished, const CommonOpt
     json["left_out"] = json_of_left_out(finished.left_out);
     json["dropped_points"] = built.notes.num_dropped;
     json["points_out_of_range"] = built.notes.num_out_of_range;
+    json["points_of_dropped_classes"] = built.notes.num_of_dropped_classes;
     json["findings"] = reading.json();
     return print_json(json);
   }

@@ -76,7 +76,10 @@ std::vector<std::string> sbatch_command(const Job& job, const SlurmStage& stage,
 
 std::string line_of_command(const std::vector<std::string>& command) {
   std::string line;
-  for (const std::string& word : command) line += (line.empty() ? "" : " ") + word;
+  for (const std::string& word : command) {
+    if (!line.empty()) line += ' ';
+    line += shell_word(word);
+  }
   return line + "\n";
 }
 

@@ -25,6 +25,7 @@ JobPlan full_plan() {
   plan.files.build.epsg = 25832;
   plan.files.build.epoch = 7;
   plan.files.inputs.label_scheme = LabelScheme::kSemanticKitti;
+  plan.files.inputs.dropped_classes = {"person", "bicyclist"};
   plan.files.inputs.read = {true,
                             false,
                             parse_sensor_choice("192.168.1.201:2368"),
@@ -55,6 +56,7 @@ TEST(JobPlan, ComesBackAsItWas) {
   EXPECT_EQ(back.files.build.anchor, plan.files.build.anchor);
   EXPECT_EQ(back.files.build.epoch, 7);
   EXPECT_EQ(back.files.inputs.label_scheme, LabelScheme::kSemanticKitti);
+  EXPECT_EQ(back.files.inputs.dropped_classes, plan.files.inputs.dropped_classes);
   EXPECT_EQ(back.files.inputs.read.sensor, plan.files.inputs.read.sensor);
   EXPECT_EQ(back.files.inputs.read.columns, plan.files.inputs.read.columns);
   EXPECT_EQ(back.files.inputs.read.bin_type, ScalarType::kFloat64);
