@@ -2,13 +2,15 @@
 #include "tests/support/raw_files.h"
 
 #include <fstream>
-#include <iterator>
+#include <sstream>
+#include <utility>
 
 namespace vdbmap::test {
 
 std::string read_raw(const std::filesystem::path& path) {
-  std::ifstream file(path, std::ios::binary);
-  return {std::istreambuf_iterator<char>(file), {}};
+  std::ostringstream bytes;
+  bytes << std::ifstream(path, std::ios::binary).rdbuf();
+  return std::move(bytes).str();
 }
 
 std::filesystem::path write_raw(const std::filesystem::path& path, std::string_view bytes) {

@@ -1,8 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include <algorithm>
 #include <cmath>
-#include <fstream>
-#include <iterator>
 #include <limits>
 #include <random>
 #include <stdexcept>
@@ -11,6 +9,7 @@
 #include <gtest/gtest.h>
 
 #include "tests/support/folders.h"
+#include "tests/support/raw_files.h"
 #include "vdbmap/io/file/byte_reader.h"
 #include "vdbmap/io/las/las.h"
 
@@ -39,10 +38,7 @@ class LasWriter : public testing::TestWithParam<unsigned> {
     return read_las(path_);
   }
 
-  std::string bytes() const {
-    std::ifstream file(path_, std::ios::binary);
-    return {std::istreambuf_iterator<char>(file), {}};
-  }
+  std::string bytes() const { return test::read_raw(path_); }
 
   template <Scalar T>
   T header_number(std::size_t at) const {

@@ -3,13 +3,13 @@
 
 #include <cmath>
 #include <fstream>
-#include <iterator>
 #include <stdexcept>
 #include <string>
 
 #include <gtest/gtest.h>
 
 #include "tests/support/folders.h"
+#include "tests/support/raw_files.h"
 #include "vdbmap/core/error.h"
 
 namespace vdbmap {
@@ -40,10 +40,7 @@ class TrajectoryFile : public testing::Test {
     return path_;
   }
 
-  std::string written_text() const {
-    std::ifstream file(path_, std::ios::binary);
-    return {std::istreambuf_iterator<char>(file), {}};
-  }
+  std::string written_text() const { return test::read_raw(path_); }
 
   std::string error_for(const std::string& text) const {
     try {

@@ -3,7 +3,6 @@
 
 #include <cmath>
 #include <fstream>
-#include <iterator>
 #include <limits>
 #include <random>
 #include <sstream>
@@ -13,6 +12,7 @@
 #include <gtest/gtest.h>
 
 #include "tests/support/folders.h"
+#include "tests/support/raw_files.h"
 #include "vdbmap/core/error.h"
 
 namespace vdbmap {
@@ -36,10 +36,7 @@ class Xyz : public testing::Test {
     return "no error";
   }
 
-  std::string written_text() const {
-    std::ifstream file(path_, std::ios::binary);
-    return {std::istreambuf_iterator<char>(file), {}};
-  }
+  std::string written_text() const { return test::read_raw(path_); }
 
   test::TemporaryFolder folder_;
   std::filesystem::path path_ = folder_ / "cloud.xyz";
