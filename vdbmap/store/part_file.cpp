@@ -131,7 +131,36 @@ Description read_description(const std::filesystem::path& path) {
   return {parse_json(text, path), std::move(hash), begin};
 }
 
+void add_notes(InputNotes& notes, const InputNotes& of_source) {
+  notes.num_points += of_source.num_points;
+  notes.num_dropped += of_source.num_dropped;
+  notes.num_out_of_range += of_source.num_out_of_range;
+  notes.num_of_dropped_classes += of_source.num_of_dropped_classes;
+  notes.findings.insert(notes.findings.end(), of_source.findings.begin(), of_source.findings.end());
+  notes.foreign_units.insert(notes.foreign_units.end(), of_source.foreign_units.begin(), of_source.foreign_units.end());
+}
+
 }  // namespace
+
+PartNotes to_be_kept(PartNotes found, const std::optional<int>& given_epsg) {
+  if (given_epsg) found.notes.epsg_of_files = given_epsg;
+  return found;
+}
+
+CommonNotes common_notes(std::span<const PartNotes* const> sources) {
+  CommonNotes common;
+  InputAgreement agreement;
+  for (const PartNotes* found : sources) {
+    const std::filesystem::path& file = found->source.name;
+    agreement.add_epsg(file, found->notes.epsg_of_files);
+    if (found->kinds.has_labels) agreement.add_labels(file, found->notes.label_scheme);
+    common.kinds.add(found->kinds);
+    add_notes(common.notes, found->notes);
+  }
+  common.notes.epsg_of_files = agreement.epsg();
+  common.notes.label_scheme = agreement.label_scheme();
+  return common;
+}
 
 std::string write_part(const std::filesystem::path& path, const std::string& made_for, const PartNotes& found,
                        std::span<const TileId> ids, const PackedTile& packed) {

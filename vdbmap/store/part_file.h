@@ -6,6 +6,7 @@
 #include <filesystem>
 #include <functional>
 #include <map>
+#include <optional>
 #include <span>
 #include <string>
 #include <vector>
@@ -25,6 +26,18 @@ struct PartNotes {
   PointKinds kinds;
   InputNotes notes;
 };
+
+/// What a city keeps of these: what was said of the coordinates when they were counted is more than what the file says.
+PartNotes to_be_kept(PartNotes found, const std::optional<int>& given_epsg);
+
+/// What sources have in common.
+struct CommonNotes {
+  PointKinds kinds;
+  InputNotes notes;
+};
+
+/// What read_inputs() of all of these sources would have found. Throws IoError as it does where they do not agree.
+CommonNotes common_notes(std::span<const PartNotes* const> sources);
 
 /// Where the sums of a tile are in a part.
 struct PartTile {
