@@ -107,6 +107,59 @@ TEST_F(CityCommand, ASourceThatIsCountedIsSkippedAndSaid) {
   EXPECT_TRUE(test::files_of_city(city()) == before);
 }
 
+TEST_F(CityCommand, WithPartsSourcesAreReplacedAndTakenOutExactly) {
+  const std::vector<std::string> options = {"--anchor", "0,0,0", "--epoch", "1", "--keep-parts"};
+  build({a()}, "city/", options);
+  json_of({"build", b(), "--into", city()});
+  build({a(), b()}, "both/", options);
+  EXPECT_TRUE(test::files_of_city(city()) == test::files_of_city(path("both")));
+
+  const std::string c = ply("c.ply", moved(scan(3), {126, 30, 3}));
+  const json replaced = json_of({"build", "--into", city(), "--replace", "b.ply=" + c});
+  EXPECT_EQ(replaced["removed_sources"], json::array({"b.ply"}));
+  EXPECT_EQ(replaced["added_sources"], 1);
+  EXPECT_TRUE(replaced["keeps_parts"]);
+  build({a(), c}, "other/", options);
+  EXPECT_TRUE(test::files_of_city(city()) == test::files_of_city(path("other")));
+
+  const CommandResult removed = vdbmap({"build", "--into", city(), "--remove", "a.ply"});
+  EXPECT_EQ(removed.exit_code, 0) << removed.err;
+  EXPECT_NE(removed.out.find("city: 1 sources removed, 0 added in "), std::string::npos) << removed.out;
+  build({c}, "left/", options);
+  EXPECT_TRUE(test::files_of_city(city()) == test::files_of_city(path("left")));
+  EXPECT_NE(vdbmap({"info", city()}).out.find("parts      kept of each source, "), std::string::npos);
+  EXPECT_EQ(vdbmap({"check", city()}).out, "passed  2 tiles and 1 parts of 1 epochs\n");
+
+  const CommandResult again = vdbmap({"build", "--into", city(), "--remove", "a.ply"});
+  EXPECT_EQ(again.exit_code, 0);
+  EXPECT_EQ(again.err, "vdbmap: a.ply: is no source of the city, so not removed\n");
+  EXPECT_TRUE(test::files_of_city(city()) == test::files_of_city(path("left")));
+
+  const std::filesystem::path part = *std::filesystem::directory_iterator(path("city/parts"));
+  std::filesystem::resize_file(part, 50);
+  expect_error(vdbmap({"build", a(), "--into", city()}), ExitCode::kBadInput,
+               part.filename().string() + ": is no part");
+  EXPECT_NE(vdbmap({"check", city()}).out.find("FAILED  " + part.string() + ": is no part"), std::string::npos);
+}
+
+TEST_F(CityCommand, WhatNeedsPartsSaysSo) {
+  build_city_of_a();
+  expect_error(
+      vdbmap({"build", "--into", city(), "--remove", "a.ply"}), ExitCode::kWrongUsage,
+      "city: does not keep the sums of its sources, so none can be taken out: build it anew with --keep-parts");
+  expect_error(vdbmap({"build", "--into", city(), "--replace", "a.ply=" + b()}), ExitCode::kWrongUsage,
+               "so none can be taken out");
+  expect_error(vdbmap({"build", b(), "--into", city(), "--keep-parts"}), ExitCode::kWrongUsage,
+               "so those of new ones are of no use: build it anew");
+  expect_error(vdbmap({"build", "--into", city(), "--replace", "a.ply"}), ExitCode::kWrongUsage,
+               "--replace is a.ply, expected SOURCE=FILE");
+  expect_error(vdbmap({"build", "--into", city()}), ExitCode::kWrongUsage, "INPUTS is required");
+  expect_error(vdbmap({"build", a(), "-o", path("x/"), "--remove", "a.ply"}), ExitCode::kWrongUsage,
+               "--remove requires --into");
+  expect_error(vdbmap({"build", a(), "-o", path("x.vdb"), "--keep-parts"}), ExitCode::kWrongUsage,
+               "--keep-parts is for a city: -o FOLDER/");
+}
+
 TEST_F(CityCommand, TheLogListsTheEpochs) {
   build_city_of_a({"--epoch", "1"});
   json_of({"build", b(), "--into", city(), "--epoch", "4"});
@@ -313,6 +366,43 @@ TEST_F(CityFault, ANewCityToo) {
     ASSERT_TRUE(test::files_of_city(path("new")) == expected) << n;
   }
   EXPECT_GT(num_kills, 15);
+}
+
+// A city that keeps parts, of one tile, in which a source is replaced.
+TEST_F(CityFault, AReplacedSourceToo) {
+  const auto small = [&](const std::string& name, unsigned seed) {
+    return ply(name, moved(scan(seed, 200), {30, 30, 3}));
+  };
+  build({small("s.ply", 1), small("t.ply", 2)}, "small/", {"--anchor", "0,0,0", "--epoch", "1", "--keep-parts"});
+  const std::filesystem::path city = path("small");
+  const Files before = test::files_of_city(city);
+  std::filesystem::copy(city, path("small_before"), std::filesystem::copy_options::recursive);
+  const std::vector<std::string> command = {
+      "build",    "--into", city.string(), "--replace", "s.ply=" + small("u.ply", 3), "--epoch", "2",
+      "--memory", "1M",     "--threads",   "1"};
+  EXPECT_EQ(vdbmap(command).exit_code, 0);
+  const Files after = test::files_of_city(city);
+  const auto with = [&](const char* fault, int n) {
+    std::filesystem::remove_all(city);
+    std::filesystem::copy(path("small_before"), city, std::filesystem::copy_options::recursive);
+    return with_fault(fault + std::to_string(n), command);
+  };
+  int num_kills = 0;
+  while (num_kills < 2000 && with("VDBMAP_KILL_AT=", num_kills + 1).signal != 0) {
+    ++num_kills;
+    ASSERT_EQ(num_points(load_map_or_city(city).finest()), 400U) << num_kills;
+    const CommandResult again = vdbmap(command);
+    ASSERT_EQ(again.exit_code, 0) << num_kills << again.err;
+    ASSERT_TRUE(test::files_of_city(city) == after) << num_kills;
+  }
+  EXPECT_GT(num_kills, 20);
+  int num_failures = 0;
+  while (num_failures < 2000 && with("VDBMAP_FULL_AT=", num_failures + 1).exit_code == 4) {
+    ++num_failures;
+    ASSERT_TRUE(test::files_of_city(city) == before) << num_failures;
+  }
+  EXPECT_TRUE(test::files_of_city(city) == after);
+  EXPECT_GT(num_failures, 3);
 }
 
 TEST_F(CityFault, AFullDiskLeavesTheCityAsItWas) {

@@ -49,6 +49,7 @@ struct BuildCommandOptions {
   CityOutput city;
 
   bool makes_city() const { return city.into || is_city_output(output.file); }
+  bool changes_sources() const { return !city.removed.empty() || !city.replaced.empty(); }
 };
 
 void add_ray_options(CLI::App& app, BuildCommandOptions& options, CLI::Option* poses) {
@@ -75,6 +76,7 @@ void add_options(CLI::App& app, BuildCommandOptions& options) {
   CLI::Option* output = app.get_option("--output");
   output->required(false);
   add_city_output(app, options.city, output);
+  app.get_option("INPUTS")->required(false);  // where sources are removed or replaced
 }
 
 MapFromFiles build(const std::vector<MapInput>& inputs, MapFromFilesOptions options, const CommonOptions& common) {
@@ -171,8 +173,12 @@ void run_for_file(const ChosenInputs& chosen, const MapFromFilesOptions& files, 
 void run_for_city(const ChosenInputs& chosen, const MapFromFilesOptions& files, const ReadingReport& listed,
                   const BuildCommandOptions& options, const CommonOptions& common) {
   const auto start = std::chrono::steady_clock::now();
+  std::vector<SourceReplacement> replaced;
+  for (const std::string& text : options.city.replaced) {
+    replaced.push_back(parse_replacement(text, options.points.read));
+  }
   const CityBuilt built =
-      build_city_of(chosen.inputs, files, options.output.save, options.output.file, options.city, common);
+      build_city_of(chosen.inputs, replaced, files, options.output.save, options.output.file, options.city, common);
   const CityLayout& layout = built.manifest.layout;
   warn_of(built.notes, layout.frame.epsg);
   warn_without_labels(options.points.classes.scheme_name, std::ranges::count(layout.channels, "label") > 0);
@@ -185,6 +191,9 @@ void run_for_city(const ChosenInputs& chosen, const MapFromFilesOptions& files, 
 // Before the work: whether there is one output, which can be written and is no input.
 void check_outputs(const BuildCommandOptions& options, const std::vector<std::filesystem::path>& inputs) {
   if (options.output.file.empty() && !options.city.into) throw std::invalid_argument("--output or --into is required");
+  if (options.city.keeps_parts && !options.makes_city()) {
+    throw std::invalid_argument("--keep-parts is for a city: -o FOLDER/");
+  }
   if (options.makes_city()) return;  // its writer checks the folder first of all
   check_output(options.output.file, kMapKind, inputs);
 }
@@ -199,6 +208,7 @@ std::vector<std::filesystem::path> label_files(const std::vector<MapInput>& inpu
 
 ExitCode run(const BuildCommandOptions& options, const CommonOptions& common) {
   const MapBuildOptions& points = options.points;
+  if (points.inputs.empty() && !options.changes_sources()) throw std::invalid_argument("INPUTS is required");
   const std::optional<std::filesystem::path>& into = options.city.into;
   const BuildOptions build =
       into ? build_options_into(city_folder(*into), points, options.output.save.density) : build_options(points);
@@ -209,8 +219,12 @@ ExitCode run(const BuildCommandOptions& options, const CommonOptions& common) {
   read_files.insert(read_files.end(), files.begin(), files.end());
   if (options.rays.trajectory) read_files.push_back(*options.rays.trajectory);
   check_outputs(options, read_files);
-  const std::vector<ScanPlace> all = list_scans(files, points.read);
-  const ChosenInputs chosen = chosen_inputs(all, points);
+  std::vector<ScanPlace> all;
+  ChosenInputs chosen;
+  if (!points.inputs.empty()) {
+    all = list_scans(files, points.read);
+    chosen = chosen_inputs(all, points);
+  }
   check_outputs(options, label_files(chosen.inputs));
   if (options.makes_city()) {
     if (options.rays.are_wanted() || !options.date.empty()) {
@@ -236,7 +250,9 @@ Command build_command() {
       "vdbmap build survey.laz --trajectory mapper.tum --date 2023-03-02 -o map.vdb\n"
       "vdbmap build a.ply b.ply --levels 0.05,0.5 --epsg 25832 --epoch 3 -o map.vdb\n"
       "vdbmap build survey/ -o city/ --epoch 1 --memory 1G\n"
-      "vdbmap build more/ --into city/ --epoch 2",
+      "vdbmap build more/ --into city/ --epoch 2\n"
+      "vdbmap build survey/ -o city/ --keep-parts\n"
+      "vdbmap build --into city/ --replace a.laz=corrected/a.laz --remove b.laz",
       add_options, run);
 }
 

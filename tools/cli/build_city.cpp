@@ -3,6 +3,7 @@
 
 #include <optional>
 #include <set>
+#include <stdexcept>
 
 #include <spdlog/fmt/fmt.h>
 #include <spdlog/spdlog.h>
@@ -12,22 +13,27 @@
 namespace vdbmap::cli {
 namespace {
 
-std::size_t count_distinct_files(const std::vector<MapInput>& inputs) {
+std::size_t count_distinct_files(const std::vector<MapInput>& inputs, const std::vector<SourceReplacement>& replaced) {
   std::set<std::filesystem::path> files;
   for (const MapInput& input : inputs) files.insert(input.scan.file);
+  for (const SourceReplacement& replacement : replaced) files.insert(replacement.input.scan.file);
   return files.size();
 }
 
 }  // namespace
 
-CityBuilt build_city_of(const std::vector<MapInput>& inputs, const MapFromFilesOptions& files, const SaveOptions& save,
-                        const std::filesystem::path& output, const CityOutput& city, const CommonOptions& common) {
+CityBuilt build_city_of(const std::vector<MapInput>& inputs, const std::vector<SourceReplacement>& replaced,
+                        const MapFromFilesOptions& files, const SaveOptions& save, const std::filesystem::path& output,
+                        const CityOutput& city, const CommonOptions& common) {
   std::optional<Progress> progress;
-  progress.emplace("identifying files", count_distinct_files(inputs), common);
+  progress.emplace("identifying files", count_distinct_files(inputs, replaced), common);
   CityBuildOptions options;
   options.files = files;
   options.save = save;
   options.memory_bytes = city.memory_bytes;
+  options.keeps_parts = city.keeps_parts;
+  options.removed = city.removed;
+  options.replaced = replaced;
   if (city.keep_epochs) options.keep_epochs = *city.keep_epochs;
   options.on_file_hashed = [&] { progress->advance(); };
   options.on_reading_begun = [&](std::size_t count) { progress.emplace("building from scans", count, common); };
@@ -38,7 +44,21 @@ CityBuilt build_city_of(const std::vector<MapInput>& inputs, const MapFromFilesO
                    : build_city(city_folder(output), inputs, options);
 }
 
+SourceReplacement parse_replacement(const std::string& text, const ReadOptions& read) {
+  const std::size_t middle = text.find('=');
+  if (middle == std::string::npos || middle == 0 || middle + 1 == text.size()) {
+    throw std::invalid_argument("--replace is " + text + ", expected SOURCE=FILE");
+  }
+  const std::string file = text.substr(middle + 1);
+  const std::vector<ScanPlace> scans = list_scans({file}, read);
+  if (scans.size() != 1) {
+    throw std::invalid_argument(fmt::format("--replace: {} has {} scans, expected one", file, scans.size()));
+  }
+  return {text.substr(0, middle), {scans.front()}};
+}
+
 void warn_not_counted(const CityBuilt& built) {
+  for (const std::string& name : built.not_found) spdlog::warn("{}: is no source of the city, so not removed", name);
   if (built.not_counted.empty()) return;
   const std::size_t num_others = built.not_counted.size() - 1;
   spdlog::warn("{}{}: counted already, left out", built.not_counted.front(),

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <filesystem>
+#include <string>
 #include <vector>
 
 #include "tools/cli/city_output.h"
@@ -11,10 +12,16 @@
 namespace vdbmap::cli {
 
 /// Builds a city in the folder `output`, or adds to that of --into, and shows how far it is.
-CityBuilt build_city_of(const std::vector<MapInput>& inputs, const MapFromFilesOptions& files, const SaveOptions& save,
-                        const std::filesystem::path& output, const CityOutput& city, const CommonOptions& common);
+CityBuilt build_city_of(const std::vector<MapInput>& inputs, const std::vector<SourceReplacement>& replaced,
+                        const MapFromFilesOptions& files, const SaveOptions& save, const std::filesystem::path& output,
+                        const CityOutput& city, const CommonOptions& common);
 
-/// Logs which inputs were not counted, as they are in the city already or twice among them.
+/// What "OLD=FILE" means: the points of a file, which is one scan, in place of the source OLD. Throws
+/// std::invalid_argument for anything else.
+SourceReplacement parse_replacement(const std::string& text, const ReadOptions& read);
+
+/// Logs which inputs were not counted, as they are in the city already or twice among them, and which were not there to
+/// be removed.
 void warn_not_counted(const CityBuilt& built);
 
 }  // namespace vdbmap::cli

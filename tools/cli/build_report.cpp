@@ -57,6 +57,15 @@ std::string text_of_left_out(const BuildReport& report) {
   return text;
 }
 
+std::string text_of_changes(const CityBuilt& built, const BuildReport& report) {
+  if (!built.removed.empty()) {
+    return fmt::format("{} sources removed, {} added", built.removed.size(), built.added.size());
+  }
+  if (report.chosen.inputs.empty()) return "nothing changed";
+  const std::string inputs = text_of_inputs(report.chosen.inputs);
+  return built.not_counted.empty() ? "built from " + inputs : fmt::format("{} of {} added", built.added.size(), inputs);
+}
+
 }  // namespace
 
 void warn_of(const InputNotes& notes, const std::optional<int>& epsg) {
@@ -86,12 +95,12 @@ void print_built(const CityBuilt& built, const std::filesystem::path& folder, co
     nlohmann::ordered_json json = json_of_city(built.manifest, folder);
     json["added_sources"] = built.added.size();
     json["not_counted"] = built.not_counted;
+    json["removed_sources"] = nlohmann::ordered_json::array();
+    for (const MapSource& source : built.removed) json["removed_sources"].push_back(source.name);
     add_report(json, report);
     return print_json(json);
   }
-  const std::string what = built.not_counted.empty() ? "built from " + text_of_inputs(report.chosen.inputs)
-                                                     : fmt::format("{} of {} added", built.added.size(),
-                                                                   text_of_inputs(report.chosen.inputs));
+  const std::string what = text_of_changes(built, report);
   print_result(fmt::format("{}: {} in {:.1f} s\n", folder.string(), what, report.seconds) + text_of_left_out(report) +
                text_of_city(built.manifest));
 }

@@ -66,8 +66,9 @@ std::string text_of(const CityCheckResult& result) {
   for (const CityProblem& problem : result.problems) {
     text += fmt::format("FAILED  {}: {}\n", printable(problem.file.string()), printable(problem.what));
   }
-  return text + fmt::format("{}  {} tiles of {} epochs\n", result.problems.empty() ? "passed" : "FAILED",
-                            result.num_tiles, result.num_epochs);
+  const std::string parts = result.num_parts == 0 ? "" : fmt::format(" and {} parts", result.num_parts);
+  return text + fmt::format("{}  {} tiles{} of {} epochs\n", result.problems.empty() ? "passed" : "FAILED",
+                            result.num_tiles, parts, result.num_epochs);
 }
 
 nlohmann::ordered_json json_of(const CityCheckResult& result, const std::filesystem::path& folder) {
@@ -76,12 +77,13 @@ nlohmann::ordered_json json_of(const CityCheckResult& result, const std::filesys
     problems.push_back({{"file", problem.file.string()}, {"what", problem.what}});
   }
   return {{"folder", folder.string()},   {"is_city", true},           {"passed", result.problems.empty()},
-          {"epochs", result.num_epochs}, {"tiles", result.num_tiles}, {"problems", problems}};
+          {"epochs", result.num_epochs}, {"tiles", result.num_tiles}, {"parts", result.num_parts},
+          {"problems", problems}};
 }
 
 ExitCode run_for_city(const std::filesystem::path& path, const CommonOptions& common) {
   const City city = open_city(path);
-  Progress progress("checking tiles", city.manifest.tiles.size(), common);
+  Progress progress("checking tiles", city.manifest.tiles.size() + city.manifest.parts.size(), common);
   const CityCheckResult result = check_city(city.folder, [&progress] { progress.advance(); });
   if (common.json) {
     print_json(json_of(result, path));

@@ -46,8 +46,28 @@ void add_city_addition(CLI::App& app, CityOutput& city, CLI::Option* output) {
       ->needs(into);
 }
 
+void add_keep_parts(CLI::App& app, CityOutput& city) {
+  app.add_flag(
+      "--keep-parts", city.keeps_parts,
+      "Keep the sums of each source in the city: what is added, removed or replaced later gives the same bytes "
+      "as building it anew");
+}
+
 void add_city_output(CLI::App& app, CityOutput& city, CLI::Option* output) {
   add_city_addition(app, city, output);
+  add_keep_parts(app, city);
+  CLI::Option* into = app.get_option("--into");
+  app.add_option("--remove", city.removed,
+                 "Take this source, by its name or hash, out of a city that keeps parts; may be given several times")
+      ->type_name("SOURCE")
+      ->allow_extra_args(false)
+      ->needs(into);
+  app.add_option("--replace", city.replaced,
+                 "Put the points of a file in place of those of a source of such a city, whose epoch they get; may be "
+                 "given several times")
+      ->type_name("SOURCE=FILE")
+      ->allow_extra_args(false)
+      ->needs(into);
   add_memory(app, city.memory_bytes,
              "What building a city may take, as 500M or 2G: beyond, sums of points go through the disk, [2G]");
 }

@@ -6,6 +6,7 @@
 #include <filesystem>
 #include <optional>
 #include <string>
+#include <vector>
 
 #include <CLI/App.hpp>
 
@@ -22,12 +23,18 @@ struct CityOutput {
   std::optional<std::filesystem::path> into;
   std::uint64_t memory_bytes = std::uint64_t{2} << 30;
   std::optional<std::size_t> keep_epochs;
+  bool keeps_parts = false;
+  std::vector<std::string> removed;   ///< names or hashes of sources of `into`
+  std::vector<std::string> replaced;  ///< "OLD=FILE"
 };
 
 /// Declares --into and --keep-epochs.
 void add_city_addition(CLI::App& app, CityOutput& city, CLI::Option* output);
 
-/// Declares these and --memory. Of --into and the option `output` one must be given.
+/// Declares --keep-parts.
+void add_keep_parts(CLI::App& app, CityOutput& city);
+
+/// Declares these, --remove, --replace and --memory. Of --into and the option `output` one must be given.
 void add_city_output(CLI::App& app, CityOutput& city, CLI::Option* output);
 
 /// Declares --memory, [bytes].

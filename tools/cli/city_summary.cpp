@@ -32,6 +32,18 @@ std::uint64_t num_bytes(const CityManifest& manifest) {
   return bytes;
 }
 
+std::uint64_t num_part_bytes(const CityManifest& manifest) {
+  std::uint64_t bytes = 0;
+  for (const CityPart& part : manifest.parts) bytes += part.num_bytes;
+  return bytes;
+}
+
+std::string text_of_parts(const CityManifest& manifest) {
+  const auto bytes = static_cast<double>(num_part_bytes(manifest));
+  const auto voxels = static_cast<double>(num_voxels(manifest).front());
+  return fmt::format("kept of each source, {:.1f} MB, {:.1f} bytes a voxel", bytes / 1e6, bytes / voxels);
+}
+
 }  // namespace
 
 std::string text_of_city(const CityManifest& manifest) {
@@ -48,6 +60,7 @@ std::string text_of_city(const CityManifest& manifest) {
   text += fact("colours", layout.has_color ? "yes" : "no");
   text += fact("epoch", std::to_string(manifest.epoch));
   text += fact("sources", std::to_string(manifest.sources.size()));
+  if (keeps_parts(manifest)) text += fact("parts", text_of_parts(manifest));
   return text + fact("size", fmt::format("{} tiles, {:.1f} MB", manifest.tiles.size(),
                                          static_cast<double>(num_bytes(manifest)) / 1e6));
 }
@@ -73,7 +86,9 @@ nlohmann::ordered_json json_of_city(const CityManifest& manifest, const std::fil
           {"epsg", layout.frame.epsg ? nlohmann::ordered_json(*layout.frame.epsg) : nlohmann::ordered_json(nullptr)},
           {"attributes", attributes_of_city(layout)},
           {"has_color", layout.has_color},
-          {"bytes", num_bytes(manifest)}};
+          {"bytes", num_bytes(manifest)},
+          {"keeps_parts", keeps_parts(manifest)},
+          {"part_bytes", num_part_bytes(manifest)}};
 }
 
 }  // namespace vdbmap::cli

@@ -36,6 +36,7 @@ void add_plan_options(CLI::App& app, TilePlanOptions& options) {
       app.add_option("-o,--output", options.output, "Folder of the city to be made")->type_name("FOLDER");
   add_density(app, options.save);
   add_city_addition(app, options.city, output);
+  add_keep_parts(app, options.city);
   app.add_option("--job", options.job, "Folder of the job (default: that of the city, with .job at its end)")
       ->type_name("FOLDER");
   app.add_option("--buckets", options.num_buckets,
@@ -65,6 +66,7 @@ JobOptions job_options(const TilePlanOptions& options, const CommonOptions& comm
   job.files = files_options(build, options.points, common);
   job.save = options.save;
   if (options.city.keep_epochs) job.keep_epochs = *options.city.keep_epochs;
+  job.keeps_parts = options.city.keeps_parts;
   job.num_buckets = options.num_buckets;
   job.skips_bad = options.skips_bad;
   return job;

@@ -158,6 +158,11 @@ class LevelMaker {
 
 }  // namespace
 
+void add_content(BlockContent& content, BlockContent added) {
+  content.sums = merge_blocks(std::move(content.sums), std::move(added.sums));
+  content.votes = content.votes.empty() ? std::move(added.votes) : merge_votes(content.votes, added.votes);
+}
+
 void add_points(VoxelBlocks& blocks, const SortedPoints& points) {
   std::vector<std::size_t> all(points.num_blocks());
   std::iota(all.begin(), all.end(), std::size_t{0});

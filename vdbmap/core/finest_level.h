@@ -19,6 +19,9 @@ struct BlockContent {
   std::vector<LabelVotes> votes;  ///< sorted
 };
 
+/// Adds sums and votes to those of a block.
+void add_content(BlockContent& content, BlockContent added);
+
 using VoxelBlocks = std::map<BlockKey, BlockContent>;
 
 /// Adds the sums and votes of the points to their blocks.

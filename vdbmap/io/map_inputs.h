@@ -37,7 +37,7 @@ struct InputOptions {
   ReadOptions read;                          ///< `is_in_sensor_frame` as the inputs have poses
   std::optional<RangeLimits> range;          ///< of the points of inputs with poses, from their sensor
   bool reads_ahead = true;                   ///< a thread of its own reads what comes next while points are taken
-  std::size_t most_points = std::numeric_limits<std::size_t>::max();  ///< of a piece of a large LAS file
+  std::size_t most_points = std::numeric_limits<std::size_t>::max();  ///< of a piece of a large LAS or LAZ file
   std::function<void()> on_scan_done = [] {};                         ///< called after each scan
 };
 

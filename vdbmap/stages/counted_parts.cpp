@@ -42,31 +42,15 @@ std::vector<Part> all_parts(const Job& job, std::vector<LeftOutSource>& left_out
   return parts;
 }
 
-void add_notes(InputNotes& notes, const InputNotes& of_part) {
-  notes.num_points += of_part.num_points;
-  notes.num_dropped += of_part.num_dropped;
-  notes.num_out_of_range += of_part.num_out_of_range;
-  notes.num_of_dropped_classes += of_part.num_of_dropped_classes;
-  notes.findings.insert(notes.findings.end(), of_part.findings.begin(), of_part.findings.end());
-  notes.foreign_units.insert(notes.foreign_units.end(), of_part.foreign_units.begin(), of_part.foreign_units.end());
-}
-
-// What the parts have in common, as read_inputs() of all of their sources would have found it.
+// What the parts have in common.
 void agree(CountedParts& counted, const JobPlan& plan) {
-  InputAgreement agreement;
-  PointKinds kinds;
-  for (const Part& part : counted.parts) {
-    const PartNotes& found = part.found;
-    const std::filesystem::path& file = found.source.name;
-    agreement.add_epsg(file, found.notes.epsg_of_files);
-    if (found.kinds.has_labels) agreement.add_labels(file, found.notes.label_scheme);
-    kinds.add(found.kinds);
-    add_notes(counted.notes, found.notes);
-  }
-  counted.notes.epsg_of_files = agreement.epsg();
-  counted.notes.label_scheme = agreement.label_scheme();
+  std::vector<const PartNotes*> found;
+  for (const Part& part : counted.parts) found.push_back(&part.found);
+  CommonNotes common = common_notes(found);
+  counted.notes = std::move(common.notes);
   check_any_point(counted.notes);
-  counted.added = layout_of_points(*plan.files.build.anchor, kinds, counted.notes, plan.files.build, plan.save.density);
+  counted.added =
+      layout_of_points(*plan.files.build.anchor, common.kinds, counted.notes, plan.files.build, plan.save.density);
 }
 
 CityLayout layout_with(const std::optional<City>& base, const CityLayout& added) {

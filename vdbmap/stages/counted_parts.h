@@ -5,7 +5,7 @@
 #include <string>
 #include <vector>
 
-#include "vdbmap/stages/part_file.h"
+#include "vdbmap/stages/source_part.h"
 #include "vdbmap/store/city_folder.h"
 
 namespace vdbmap {

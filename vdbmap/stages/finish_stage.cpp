@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "vdbmap/stages/finish_stage.h"
 
+#include <algorithm>
+#include <map>
 #include <system_error>
 #include <utility>
 
@@ -48,11 +50,27 @@ CityManifest manifest_of(const CountedParts& counted, const std::vector<MadeTile
   return manifest_with(counted.base, std::move(kept), std::move(tiles), counted.epoch);
 }
 
+// The parts of the job become those of the city, as build_city() writes them.
+std::vector<CityPart> keep_parts(const Job& job, const CountedParts& counted, const CityWriter& writer) {
+  std::vector<CityPart> kept;
+  for (const Part& part : counted.parts) {
+    std::map<TileId, const PartTile*> tiles;
+    for (const PartTile& tile : part.tiles) tiles[tile.id] = &tile;
+    std::vector<TileId> ids;
+    for (const auto& [id, tile] : tiles) ids.push_back(id);
+    const PartNotes found = to_be_kept(part.found, job.plan.files.build.epsg);
+    kept.push_back(writer.save_part(found, ids, [&](const TileId& id) { return packed_tile(part, *tiles.at(id)); }));
+  }
+  std::ranges::sort(kept, {}, &CityPart::source);
+  return kept;
+}
+
 CityManifest publish(const Job& job, const CountedParts& counted) {
   const std::vector<MadeTile> made = made_tiles(job, counted);
   CityWriter writer(job.plan.city);
   check_city(job.plan, counted);
-  const CityManifest manifest = manifest_of(counted, made);
+  CityManifest manifest = manifest_of(counted, made);
+  if (job.plan.keeps_parts) manifest.parts = keep_parts(job, counted, writer);
   parallel_tasks(made.size(), [&](std::size_t i) { writer.adopt_tile(made[i].tile, made[i].folder); });
   write_file(published_path(job), hash_of_bytes(text_of(manifest)));
   writer.publish(manifest, job.plan.keep_epochs);

@@ -83,6 +83,7 @@ Json head_of(const JobPlan& plan) {
   head["range"] = json_of(plan.files.inputs.range);
   head["density"] = plan.save.density;
   head["keep_epochs"] = plan.keep_epochs;
+  head["keeps_parts"] = plan.keeps_parts;
   head["buckets"] = plan.num_buckets;
   return head;
 }
@@ -198,6 +199,7 @@ JobPlan parse_job_plan(std::string_view text, const std::filesystem::path& path)
   plan.files.inputs.range = range_of(root.at("range"));
   plan.save.density = static_cast<float>(root.at("density").number());
   plan.keep_epochs = root.at("keep_epochs").count();
+  plan.keeps_parts = root.at("keeps_parts").truth();
   plan.num_buckets = root.at("buckets").count();
   if (plan.num_buckets == 0) root.at("buckets").fail("is 0");
   for (const JsonField& source : root.at("sources").elements()) plan.sources.push_back(planned_source(source));

@@ -37,13 +37,14 @@ struct JobPlan {
   MapFromFilesOptions files;   ///< with an anchor
   SaveOptions save;
   std::size_t keep_epochs = std::numeric_limits<std::size_t>::max();
+  bool keeps_parts = false;             ///< as CityBuildOptions has it
   std::size_t num_buckets = 1;          ///< of tiles that are finished together
   std::vector<PlannedSource> sources;   ///< in the order of their names
   std::vector<LeftOutSource> left_out;  ///< while the plan was made
 };
 
 /// Version of the plans that we write; of others nothing is known.
-inline constexpr std::int32_t kJobFormat = 1;
+inline constexpr std::int32_t kJobFormat = 2;
 
 /// The plan as JSON, a line a source. Equal plans give equal texts. Throws std::invalid_argument for names that are not
 /// UTF-8, which JSON cannot hold.

@@ -3,7 +3,7 @@
 
 #include <cstddef>
 
-#include "vdbmap/stages/part_file.h"
+#include "vdbmap/stages/source_part.h"
 
 namespace vdbmap {
 

@@ -85,6 +85,17 @@ void check_target(const std::filesystem::path& folder, const JobPlan& plan) {
   }
 }
 
+// A job merges what it made with the city's tiles, which is not what the sums of all sources would give.
+void check_without_parts(const City& city, bool keeps_parts_too) {
+  const std::string folder = city.folder.string();
+  if (keeps_parts(city.manifest)) {
+    throw std::invalid_argument(folder + ": keeps the sums of its sources: add to it by build --into");
+  }
+  if (keeps_parts_too) {
+    throw std::invalid_argument(folder + ": does not keep the sums of its sources, so those of new ones are of no use");
+  }
+}
+
 std::size_t number_of_buckets(const std::vector<PlannedSource>& sources) {
   std::uint64_t num_bytes = 0;
   for (const PlannedSource& source : sources) num_bytes += source.num_bytes;
@@ -102,9 +113,14 @@ Job plan_job(const std::filesystem::path& folder, const std::vector<MapInput>& i
   plan.files = options.files;
   plan.save = options.save;
   plan.keep_epochs = options.keep_epochs;
+  plan.keeps_parts = options.keeps_parts;
   if (plan.adds) open_city(plan.city);  // is no new folder
   check_target(folder, plan);
-  if (plan.adds) fit_to_city(open_city(plan.city), plan.files, plan.save);
+  if (plan.adds) {
+    const City city = open_city(plan.city);
+    check_without_parts(city, plan.keeps_parts);
+    fit_to_city(city, plan.files, plan.save);
+  }
   plan.city_state = city_state(plan.city);
   plan.sources = planned_sources(inputs);
   plan.num_buckets = options.num_buckets > 0 ? options.num_buckets : number_of_buckets(plan.sources);

@@ -16,6 +16,7 @@ struct JobOptions {
   MapFromFilesOptions files;
   SaveOptions save;
   std::size_t keep_epochs = std::numeric_limits<std::size_t>::max();
+  bool keeps_parts = false;                         ///< in a new city
   std::size_t num_buckets = 0;                      ///< 0: one a GB of inputs, at least 4, at most 1000
   std::size_t memory_bytes = std::size_t{2} << 30;  ///< that looking into the first source may take
   bool skips_bad = false;                           ///< a first source that cannot be read is left out

@@ -2,7 +2,6 @@
 #include "vdbmap/stages/reduce_stage.h"
 
 #include <algorithm>
-#include <map>
 #include <system_error>
 #include <utility>
 
@@ -21,13 +20,6 @@ namespace {
 // Says for which plan a bucket was made.
 std::filesystem::path key_path(const std::filesystem::path& bucket) { return bucket / "plan"; }
 
-struct TileInPart {
-  const Part* part;
-  const PartTile* tile;
-};
-
-using TilesOfParts = std::map<TileId, std::vector<TileInPart>>;
-
 TilesOfParts tiles_of_bucket(const Job& job, std::size_t bucket, const CountedParts& counted) {
   TilesOfParts tiles;
   for (const Part& part : counted.parts) {
@@ -36,18 +28,6 @@ TilesOfParts tiles_of_bucket(const Job& job, std::size_t bucket, const CountedPa
     }
   }
   return tiles;
-}
-
-VoxelBlocks sums_of(const std::vector<TileInPart>& places) {
-  VoxelBlocks blocks;
-  for (const TileInPart& place : places) add_tile_of_part(*place.part, *place.tile, blocks);
-  return blocks;
-}
-
-std::vector<TileId> ids_of(const TilesOfParts& tiles) {
-  std::vector<TileId> ids;
-  for (const auto& [id, places] : tiles) ids.push_back(id);
-  return ids;
 }
 
 // Those that are made of parts, and of the city's others those that get attributes that they had not.

@@ -1,19 +1,17 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "vdbmap/store/city_build.h"
 
-#include <algorithm>
-#include <numeric>
 #include <optional>
-#include <set>
 #include <stdexcept>
-#include <tuple>
+#include <string>
 #include <utility>
 
 #include "vdbmap/core/error.h"
 #include "vdbmap/io/file/atomic_folder.h"
 #include "vdbmap/store/city_base.h"
+#include "vdbmap/store/city_of_parts.h"
 #include "vdbmap/store/city_writer.h"
-#include "vdbmap/store/source_hash.h"
+#include "vdbmap/store/source_changes.h"
 #include "vdbmap/store/source_points.h"
 #include "vdbmap/store/tile_finish.h"
 #include "vdbmap/store/tile_renewal.h"
@@ -22,34 +20,8 @@
 namespace vdbmap {
 namespace {
 
-// Inputs and what tells them apart, in the order in which they are counted.
-struct NewSources {
-  std::vector<MapInput> inputs;
-  std::vector<MapSource> sources;
-  std::vector<std::string> not_counted;
-};
-
-NewSources sort_sources(const std::vector<MapInput>& inputs, const std::vector<MapSource>& sources,
-                        const std::vector<MapSource>& known) {
-  std::vector<std::size_t> order(inputs.size());
-  std::iota(order.begin(), order.end(), std::size_t{0});
-  std::ranges::sort(order, {}, [&](std::size_t i) { return std::tie(sources[i].name, sources[i].hash); });
-  std::set<std::string> counted;
-  for (const MapSource& source : known) counted.insert(source.hash);
-  NewSources result;
-  for (const std::size_t i : order) {
-    if (!counted.insert(sources[i].hash).second) {
-      result.not_counted.push_back(sources[i].name);
-      continue;
-    }
-    result.inputs.push_back(inputs[i]);
-    result.sources.push_back(sources[i]);
-  }
-  return result;
-}
-
 // Counts the new sources and publishes the city with them.
-CityBuilt write_city(CityWriter& writer, const std::optional<City>& base, NewSources counted,
+CityBuilt write_city(CityWriter& writer, const std::optional<City>& base, SourceChanges counted,
                      const CityBuildOptions& options) {
   const AtomicFolder spilled(writer.folder() / "sums");
   TileSums sums(options.files.build.voxel_sizes, spilled.temporary_path(), bytes_of_sums(options.memory_bytes));
@@ -58,10 +30,7 @@ CityBuilt write_city(CityWriter& writer, const std::optional<City>& base, NewSou
   check_any_point(points.notes);
 
   const std::int32_t epoch = options.files.build.epoch.value_or(base ? base->manifest.epoch : 0);
-  for (std::size_t i = 0; i < counted.sources.size(); ++i) {
-    counted.sources[i].num_points = points.num_points[i];
-    counted.sources[i].epoch = epoch;
-  }
+  for (std::size_t i = 0; i < counted.sources.size(); ++i) counted.sources[i].num_points = points.num_points[i];
   const CityLayout added =
       layout_of_points(*points.anchor, points.kinds, points.notes, options.files.build, options.save.density);
   const CityLayout layout = base ? merged_layout(base->manifest.layout, added) : added;
@@ -76,9 +45,23 @@ CityBuilt write_city(CityWriter& writer, const std::optional<City>& base, NewSou
   std::vector<CityTile> kept;
   if (base) kept = keep_tiles(*base, tiles_without(*base, ids), layout, save);
   CityBuilt built{manifest_with(base, std::move(kept), {layout, std::move(renewed), counted.sources}, epoch),
-                  std::move(points.notes), std::move(counted.sources), std::move(counted.not_counted)};
+                  std::move(points.notes),
+                  std::move(counted.sources),
+                  std::move(counted.not_counted),
+                  {},
+                  {}};
   writer.publish(built.manifest, options.keep_epochs);
   return built;
+}
+
+// Nothing of a city without parts can be taken out exactly: its tiles hold rounded means of all sources.
+void check_kept_parts(const City& base, const CityBuildOptions& options) {
+  if (keeps_parts(base.manifest)) return;
+  const std::string reason = base.folder.string() + ": does not keep the sums of its sources, so ";
+  if (!options.removed.empty() || !options.replaced.empty()) {
+    throw std::invalid_argument(reason + "none can be taken out: build it anew with --keep-parts");
+  }
+  if (options.keeps_parts) throw std::invalid_argument(reason + "those of new ones are of no use: build it anew");
 }
 
 }  // namespace
@@ -87,9 +70,10 @@ CityBuilt build_city(const std::filesystem::path& folder, const std::vector<MapI
                      const CityBuildOptions& options) {
   options.files.build.check();
   CityWriter writer(folder);
-  NewSources counted = sort_sources(inputs, identify_sources(inputs, options.on_file_hashed), {});
-  if (writer.current()) check_replaceable(*writer.current(), writer.num_epochs(), counted.sources);
-  return write_city(writer, std::nullopt, std::move(counted), options);
+  SourceChanges changes = find_changes(std::nullopt, inputs, options);
+  if (writer.current()) check_replaceable(*writer.current(), writer.num_epochs(), changes.sources);
+  if (options.keeps_parts) return write_city_of_parts(writer, std::nullopt, std::move(changes), options);
+  return write_city(writer, std::nullopt, std::move(changes), options);
 }
 
 CityBuilt add_to_city(const std::filesystem::path& folder, const std::vector<MapInput>& inputs,
@@ -100,10 +84,14 @@ CityBuilt add_to_city(const std::filesystem::path& folder, const std::vector<Map
   const std::optional<City> base = writer.current();
   CityBuildOptions fitting = options;
   fit_to_city(*base, fitting.files, fitting.save);
-  NewSources counted = sort_sources(inputs, identify_sources(inputs, options.on_file_hashed), base->manifest.sources);
-  if (counted.inputs.empty()) return {base->manifest, {}, {}, std::move(counted.not_counted)};
+  check_kept_parts(*base, options);
+  SourceChanges changes = find_changes(base, inputs, fitting);
+  if (changes.empty()) {
+    return {base->manifest, {}, {}, std::move(changes.not_counted), {}, std::move(changes.not_found)};
+  }
   try {
-    return write_city(writer, base, std::move(counted), fitting);
+    return keeps_parts(base->manifest) ? write_city_of_parts(writer, base, std::move(changes), fitting)
+                                       : write_city(writer, base, std::move(changes), fitting);
   } catch (const std::invalid_argument& error) {
     throw IoError::malformed(folder, error.what());
   }

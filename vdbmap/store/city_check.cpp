@@ -1,12 +1,14 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "vdbmap/store/city_check.h"
 
+#include <algorithm>
 #include <map>
 #include <utility>
 
 #include "vdbmap/core/error.h"
 #include "vdbmap/core/parallel.h"
 #include "vdbmap/store/city_window.h"
+#include "vdbmap/store/kept_parts.h"
 
 namespace vdbmap {
 namespace {
@@ -43,6 +45,35 @@ std::vector<std::string> problems_of(const NamedTile& named) {
   }
 }
 
+// A part as one manifest has it.
+struct NamedPart {
+  MapSource source;
+  CityPart part;
+};
+
+std::vector<std::string> problems_of(const std::filesystem::path& folder, const NamedPart& named) {
+  try {
+    check_sums(open_kept_source(folder, named.source, named.part).part);
+    return {};
+  } catch (const std::exception& error) {
+    return {without_path(error.what(), kept_part_path(folder, named.part))};
+  }
+}
+
+// The parts of all epochs, each once.
+std::vector<NamedPart> parts_of(const std::vector<City>& cities) {
+  std::map<std::string, NamedPart> parts;
+  for (const City& city : cities) {
+    for (const MapSource& source : city.manifest.sources) {
+      const CityPart* part = find_part(city.manifest, source.hash);
+      if (part) parts.try_emplace(part->hash, NamedPart{source, *part});
+    }
+  }
+  std::vector<NamedPart> list;
+  for (auto& [hash, part] : parts) list.push_back(std::move(part));
+  return list;
+}
+
 // The epochs whose manifests can be read.
 std::vector<City> open_epochs(const std::filesystem::path& folder, CityCheckResult& result) {
   std::vector<City> cities = {open_city(folder)};
@@ -72,16 +103,20 @@ CityCheckResult check_city(const std::filesystem::path& folder, const std::funct
       tiles.try_emplace(tile_path(folder, tile), NamedTile{&city, &tile});
   }
   const std::vector<std::pair<std::filesystem::path, NamedTile>> list(tiles.begin(), tiles.end());
-  std::vector<std::vector<std::string>> problems(list.size());
-  parallel_for(list.size(), [&](std::size_t i) {
-    problems[i] = problems_of(list[i].second);
+  const std::vector<NamedPart> parts = parts_of(cities);
+  std::vector<std::vector<std::string>> problems(list.size() + parts.size());
+  parallel_for(problems.size(), [&](std::size_t i) {
+    problems[i] = i < list.size() ? problems_of(list[i].second) : problems_of(folder, parts[i - list.size()]);
     on_tile_done();
   });
-  for (std::size_t i = 0; i < list.size(); ++i) {
-    for (const std::string& what : problems[i]) result.problems.push_back({list[i].first, what});
+  for (std::size_t i = 0; i < problems.size(); ++i) {
+    const std::filesystem::path file =
+        i < list.size() ? list[i].first : kept_part_path(folder, parts[i - list.size()].part);
+    for (const std::string& what : problems[i]) result.problems.push_back({file, what});
   }
   result.num_epochs = cities.size();
   result.num_tiles = list.size();
+  result.num_parts = parts.size();
   return result;
 }
 

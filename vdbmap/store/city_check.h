@@ -20,12 +20,13 @@ struct CityProblem {
 struct CityCheckResult {
   std::size_t num_epochs = 0;
   std::size_t num_tiles = 0;  ///< of all epochs, each file once
+  std::size_t num_parts = 0;  ///< likewise
   std::vector<CityProblem> problems;
 };
 
-/// Judges a city: its manifests, every tile of every epoch by the rules of check_map_file(), and whether both agree.
-/// Goes on after what is wrong: all of it is listed. `on_tile_done` may be called by any thread. Throws IoError where
-/// there is no manifest to begin with.
+/// Judges a city: its manifests, every tile of every epoch by the rules of check_map_file(), every sum of the parts
+/// that it keeps, and whether all agree. Goes on after what is wrong: all of it is listed. `on_tile_done` is called
+/// after each tile and part, by any thread. Throws IoError where there is no manifest to begin with.
 CityCheckResult check_city(
     const std::filesystem::path& folder, const std::function<void()>& on_tile_done = [] {});
 

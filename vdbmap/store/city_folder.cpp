@@ -83,6 +83,12 @@ std::filesystem::path tiles_path(const std::filesystem::path& folder) { return f
 
 std::filesystem::path cache_path(const std::filesystem::path& folder) { return folder / "cache"; }
 
+std::filesystem::path kept_parts_path(const std::filesystem::path& folder) { return folder / "parts"; }
+
+std::filesystem::path kept_part_path(const std::filesystem::path& folder, const CityPart& part) {
+  return kept_parts_path(folder) / (part.hash + ".part");
+}
+
 std::filesystem::path tile_path(const std::filesystem::path& folder, const CityTile& tile) {
   return tiles_path(folder) / tile_file_name(tile);
 }

@@ -15,6 +15,7 @@
 ///     map.json               the manifest: what the city is now
 ///     epochs/N.json          what it was in epoch N
 ///     tiles/X_Y.HASH.vdb     tiles of all epochs, by their content
+///     parts/HASH.part        sums of sources of all epochs, by their content; where the city keeps them
 ///     cache/                 what readers computed of tiles and may lose (tile_cache.h)
 ///     lock                   who writes
 namespace vdbmap {
@@ -31,6 +32,8 @@ std::filesystem::path epochs_path(const std::filesystem::path& folder);
 std::filesystem::path epoch_path(const std::filesystem::path& folder, std::int32_t epoch);
 std::filesystem::path tiles_path(const std::filesystem::path& folder);
 std::filesystem::path cache_path(const std::filesystem::path& folder);
+std::filesystem::path kept_parts_path(const std::filesystem::path& folder);
+std::filesystem::path kept_part_path(const std::filesystem::path& folder, const CityPart& part);
 std::filesystem::path tile_path(const std::filesystem::path& folder, const CityTile& tile);
 
 /// Name of a tile's file without its hash: "3_-12".

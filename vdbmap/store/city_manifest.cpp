@@ -2,12 +2,14 @@
 #include "vdbmap/store/city_manifest.h"
 
 #include <algorithm>
+#include <set>
 #include <stdexcept>
 #include <utility>
 
 #include <nlohmann/json.hpp>
 
 #include "vdbmap/core/error.h"
+#include "vdbmap/store/content_hash.h"
 #include "vdbmap/store/json_field.h"
 
 namespace vdbmap {
@@ -35,6 +37,8 @@ Json json_of(const CityTile& tile) {
 Json json_of(const MapSource& source) {
   return {{"name", source.name}, {"hash", source.hash}, {"points", source.num_points}, {"epoch", source.epoch}};
 }
+
+Json json_of(const CityPart& part) { return {{"source", part.source}, {"hash", part.hash}, {"bytes", part.num_bytes}}; }
 
 // A name need not be UTF-8, JSON must be: what is not becomes U+FFFD, and the hash still tells sources apart.
 std::string dump(const Json& json) { return json.dump(-1, ' ', false, Json::error_handler_t::replace); }
@@ -113,6 +117,15 @@ MapSource source_of(const JsonField& field) {
           field.at("epoch").integer()};
 }
 
+CityPart part_of(const JsonField& field, const std::set<std::string>& sources) {
+  CityPart part;
+  part.source = field.at("source").hash(kSourceHashSize);
+  part.hash = field.at("hash").hash(ContentHash::kNumDigits);
+  part.num_bytes = field.at("bytes").count();
+  if (!sources.contains(part.source)) field.at("source").fail("is no source");
+  return part;
+}
+
 }  // namespace
 
 bool CityTile::operator==(const CityTile& other) const {
@@ -135,6 +148,7 @@ std::string text_of(const CityManifest& manifest) {
   add_line(text, "label_scheme", dump(std::string(vdbmap::text_of(layout.label_scheme))));
   add_line(text, "density", dump(layout.density));
   add_line(text, "tiles", lines_of(manifest.tiles));
+  if (!manifest.parts.empty()) add_line(text, "parts", lines_of(manifest.parts));
   return text + "  \"sources\": " + lines_of(manifest.sources) + "\n}\n";
 }
 
@@ -153,6 +167,16 @@ CityManifest parse_city_manifest(std::string_view text, const std::filesystem::p
     if (count > 1 && !(manifest.tiles[count - 2].id < manifest.tiles[count - 1].id)) field.fail("is out of order");
   }
   for (const JsonField& field : root.at("sources").elements()) manifest.sources.push_back(source_of(field));
+  if (!root.has("parts")) return manifest;
+  std::set<std::string> sources;
+  for (const MapSource& source : manifest.sources) sources.insert(source.hash);
+  for (const JsonField& field : root.at("parts").elements()) {
+    manifest.parts.push_back(part_of(field, sources));
+    const std::size_t count = manifest.parts.size();
+    if (count > 1 && manifest.parts[count - 2].source >= manifest.parts[count - 1].source) {
+      field.fail("is out of order");
+    }
+  }
   return manifest;
 }
 
@@ -195,6 +219,11 @@ const CityTile* find_tile(const CityManifest& manifest, const TileId& id) {
   return found == manifest.tiles.end() || found->id != id ? nullptr : &*found;
 }
 
+const CityPart* find_part(const CityManifest& manifest, const std::string& source) {
+  const auto found = std::ranges::lower_bound(manifest.parts, source, {}, &CityPart::source);
+  return found == manifest.parts.end() || found->source != source ? nullptr : &*found;
+}
+
 std::optional<Extent> extent(const CityManifest& manifest) {
   if (manifest.tiles.empty()) return std::nullopt;
   Extent box = manifest.tiles.front().extent;
@@ -203,6 +232,10 @@ std::optional<Extent> extent(const CityManifest& manifest) {
     box.max = box.max.cwiseMax(tile.extent.max);
   }
   return box;
+}
+
+bool keeps_parts(const CityManifest& manifest) {
+  return !manifest.parts.empty() && manifest.parts.size() == manifest.sources.size();
 }
 
 std::uint64_t num_points(const CityManifest& manifest) {

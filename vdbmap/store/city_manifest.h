@@ -38,12 +38,22 @@ struct CityTile {
   bool operator==(const CityTile& other) const;
 };
 
+/// The sums of a source that a city keeps (part_file.h).
+struct CityPart {
+  std::string source;           ///< hash of the source
+  std::string hash;             ///< of the part, 32 hexadecimal digits: its name
+  std::uint64_t num_bytes = 0;  ///< of the file
+
+  bool operator==(const CityPart&) const = default;
+};
+
 /// What a city is in one epoch.
 struct CityManifest {
   std::int32_t epoch = 0;  ///< number of the latest survey in it; 0 where none was given
   CityLayout layout;
-  std::vector<CityTile> tiles;     ///< sorted, each with a voxel at least
-  std::vector<MapSource> sources;  ///< sorted by epoch, name and hash
+  std::vector<CityTile> tiles;       ///< sorted, each with a voxel at least
+  std::vector<MapSource> sources;    ///< sorted by epoch, name and hash
+  std::vector<CityPart> parts = {};  ///< sorted by source; empty where none are kept
 
   bool operator==(const CityManifest&) const = default;
 };
@@ -73,8 +83,14 @@ CityTile describe_tile(const TileId& id, const VoxelMap& tile);
 /// The tile of that id, or nullptr.
 const CityTile* find_tile(const CityManifest& manifest, const TileId& id);
 
+/// The part of the source of that hash, or nullptr.
+const CityPart* find_part(const CityManifest& manifest, const std::string& source);
+
 /// The box around all tiles; nothing without one.
 std::optional<Extent> extent(const CityManifest& manifest);
+
+/// Whether the city keeps the sums of each of its sources: its tiles can be made anew of any of them.
+bool keeps_parts(const CityManifest& manifest);
 
 /// Points, and voxels of each level, of all tiles.
 std::uint64_t num_points(const CityManifest& manifest);

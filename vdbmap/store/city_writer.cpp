@@ -26,7 +26,7 @@ namespace {
 using Path = std::filesystem::path;
 
 // Names in the folder of a city; those of unfinished files go on with a dot and letters.
-constexpr std::array<std::string_view, 6> kNames = {"map.json", "epochs", "tiles", "lock", "sums", "cache"};
+constexpr std::array<std::string_view, 7> kNames = {"map.json", "epochs", "tiles", "parts", "lock", "sums", "cache"};
 
 bool is_ours(const std::string& name) {
   return std::ranges::any_of(kNames, [&](std::string_view ours) {
@@ -79,12 +79,31 @@ bool may_be_tile(const std::string& name) {
          front.find_first_not_of("-_0123456789") == std::string_view::npos;
 }
 
-std::set<std::string> named_tiles(const Path& folder) {
-  std::set<std::string> names;
+// The files that manifests name.
+struct NamedFiles {
+  std::set<std::string> tiles;
+  std::set<std::string> parts;
+};
+
+NamedFiles named_files(const Path& folder) {
+  NamedFiles names;
   for (const auto& [epoch, manifest] : read_epochs(folder)) {
-    for (const CityTile& tile : manifest.tiles) names.insert(tile_path(folder, tile).filename().string());
+    for (const CityTile& tile : manifest.tiles) names.tiles.insert(tile_path(folder, tile).filename().string());
+    for (const CityPart& part : manifest.parts) names.parts.insert(kept_part_path(folder, part).filename().string());
   }
   return names;
+}
+
+// A part, or what is on its way to be one.
+bool may_be_part(const std::string& name) { return name.find(".part") != std::string::npos; }
+
+void sweep_parts(const Path& folder, const std::set<std::string>& named) {
+  for (const Path& file : list_folder_entries(folder)) {
+    const std::string name = file.filename().string();
+    if (may_be_part(name) && !named.contains(name)) remove_with_content(file);
+  }
+  std::error_code error;
+  if (named.empty()) std::filesystem::remove(folder, error);  // unless something else is in it
 }
 
 void copy_tile(const Path& from, const Path& to) {
@@ -167,8 +186,19 @@ void CityWriter::adopt_tile(const CityTile& tile, const Path& city) const {
   ::unlink(unnamed.c_str());
 }
 
+CityPart CityWriter::save_part(const PartNotes& found, std::span<const TileId> ids, const PackedTile& packed) const {
+  create_folder(kept_parts_path(folder_));
+  const Path unnamed = kept_parts_path(folder_) / (found.source.hash + ".part.new");
+  CityPart part{found.source.hash, write_part(unnamed, "city", found, ids, packed), 0};
+  part.num_bytes = std::filesystem::file_size(unnamed);
+  const Path path = kept_part_path(folder_, part);
+  if (::rename(unnamed.c_str(), path.c_str()) != 0) throw IoError::system(path, "cannot create", errno);
+  return part;
+}
+
 void CityWriter::publish(const CityManifest& manifest, std::size_t keep_epochs) {
   sync_folder(tiles_path(folder_));
+  if (!manifest.parts.empty()) sync_folder(kept_parts_path(folder_));
   if (current_ && current_->manifest.epoch != manifest.epoch) keep_manifest(folder_, current_->manifest);
   write_file(manifest_path(folder_), text_of(manifest));
   is_published_ = true;
@@ -186,15 +216,16 @@ void CityWriter::publish(const CityManifest& manifest, std::size_t keep_epochs) 
 void CityWriter::sweep() const {
   // Kept by a writer that came no further: the manifest of that epoch is still the latest.
   if (current_) remove_with_content(epoch_path(folder_, current_->manifest.epoch));
-  const std::set<std::string> named = named_tiles(folder_);
+  const NamedFiles named = named_files(folder_);
+  sweep_parts(kept_parts_path(folder_), named.parts);
   for (const Path& file : list_folder_entries(tiles_path(folder_))) {
     const std::string name = file.filename().string();
-    if (may_be_tile(name) && !named.contains(name)) remove_with_content(file);
+    if (may_be_tile(name) && !named.tiles.contains(name)) remove_with_content(file);
   }
   for (const Path& file : list_folder_entries(cache_path(folder_))) {
     const std::string name = file.filename().string();
     const std::size_t hash_end = name.find('.', name.find('.') + 1);
-    if (!named.contains(name.substr(0, hash_end) + ".vdb")) remove_with_content(file);
+    if (!named.tiles.contains(name.substr(0, hash_end) + ".vdb")) remove_with_content(file);
   }
   for (const Path& folder : {folder_, epochs_path(folder_)}) {
     for (const Path& file : list_folder_entries(folder)) {

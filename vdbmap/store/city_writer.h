@@ -4,9 +4,11 @@
 #include <cstddef>
 #include <filesystem>
 #include <optional>
+#include <span>
 
 #include "vdbmap/store/city_folder.h"
 #include "vdbmap/store/city_lock.h"
+#include "vdbmap/store/part_file.h"
 
 namespace vdbmap {
 
@@ -19,8 +21,8 @@ CityTile save_tile(const std::filesystem::path& tiles_folder, const TileId& id, 
 void check_tile_file(const std::filesystem::path& path, const CityTile& tile);
 
 /// Writes a city. What it is changes in one moment, when publish() renames the manifest: before, readers see the state
-/// before, whatever tiles were saved, and a process that ends at any moment leaves that state. Tiles that no manifest
-/// names are removed: those of a writer that ended too early by the next one.
+/// before, whatever tiles were saved, and a process that ends at any moment leaves that state. Tiles and parts that no
+/// manifest names are removed: those of a writer that ended too early by the next one.
 class CityWriter {
  public:
   /// Takes the lock of the folder, which is created where there is none, and sweeps what other writers left. Throws
@@ -47,6 +49,9 @@ class CityWriter {
   /// Takes a tile that lies in another city: another name of the same file where the file system knows that, else a
   /// copy. Throws IoError, malformed where it is not the file that `tile` says.
   void adopt_tile(const CityTile& tile, const std::filesystem::path& city) const;
+
+  /// Saves the sums of a source under the name of their content; see write_part(). The folder of parts is made.
+  CityPart save_part(const PartNotes& found, std::span<const TileId> ids, const PackedTile& packed) const;
 
   /// Makes this the city, once all of its tiles are on disk. The manifest before is kept where it is of another epoch;
   /// of all epochs the latest `keep_epochs`, which is 1 or more.

@@ -167,10 +167,7 @@ void add_packed_sums(std::string_view bytes, const std::filesystem::path& path, 
   PackedReader reader(bytes, path);
   while (!reader.is_at_end()) {
     const auto block = BlockKey{reader.get()};
-    BlockContent added = get_block(reader, block);
-    BlockContent& content = blocks[block];
-    content.sums = merge_blocks(std::move(content.sums), std::move(added.sums));
-    content.votes = merge_votes(content.votes, added.votes);
+    add_content(blocks[block], get_block(reader, block));
   }
 }
 

@@ -25,9 +25,11 @@ std::array<TileId, 9> tiles_in_and_around(const TileId& tile) {
   return tiles;
 }
 
-bool has_labels(const CityLayout& layout) {
-  return std::ranges::find(layout.channels, "label") != layout.channels.end();
+bool has_channel(const CityLayout& layout, const char* name) {
+  return std::ranges::find(layout.channels, name) != layout.channels.end();
 }
+
+bool has_labels(const CityLayout& layout) { return has_channel(layout, "label"); }
 
 LabelScheme merged_scheme(const CityLayout& a, const CityLayout& b) {
   if (!has_labels(a) || !has_labels(b)) return has_labels(a) ? a.label_scheme : b.label_scheme;
@@ -67,6 +69,45 @@ VoxelLevel with_channels(VoxelLevel level, const std::vector<std::string>& names
   const std::span<const VoxelLeaf> leaves = level.leaves();
   const std::span<const VoxelRecord> records = std::as_const(level).records();
   return {level.voxel_size(), {leaves.begin(), leaves.end()}, {records.begin(), records.end()}, std::move(channels)};
+}
+
+// An epoch in which a voxel was seen. By voxel and epoch they are sorted.
+struct SeenVoxel {
+  VoxelKey voxel;
+  std::int32_t epoch;
+
+  auto operator<=>(const SeenVoxel&) const = default;
+};
+
+std::vector<SeenVoxel> seen_voxels(const std::vector<EpochSums>& epochs) {
+  std::vector<SeenVoxel> seen;
+  for (const EpochSums& epoch : epochs) {
+    for (const auto& [block, content] : epoch.sums) {
+      for (const KeyedSums& voxel : content.sums) seen.push_back({key_of_voxel(block, voxel.key), epoch.epoch});
+    }
+  }
+  std::ranges::sort(seen);
+  return seen;
+}
+
+// Records are in the order of their voxels' keys.
+void add_epochs(VoxelChannels& channels, const std::vector<SeenVoxel>& seen) {
+  for (std::size_t i = 0; i < seen.size(); ++i) {
+    if (i > 0 && seen[i].voxel == seen[i - 1].voxel) {
+      channels.last_epochs.back() = seen[i].epoch;
+      continue;
+    }
+    channels.first_epochs.push_back(seen[i].epoch);
+    channels.last_epochs.push_back(seen[i].epoch);
+  }
+}
+
+VoxelBlocks sums_of_all(std::vector<EpochSums> epochs) {
+  VoxelBlocks all = std::move(epochs.front().sums);
+  for (EpochSums& epoch : std::span(epochs).subspan(1)) {
+    for (auto& [block, content] : epoch.sums) add_content(all[block], std::move(content));
+  }
+  return all;
 }
 
 }  // namespace
@@ -134,6 +175,19 @@ VoxelMap finish_tile(const TileId& tile, VoxelBlocks sums, const FinestLevelOpti
     map->label_scheme = layout.label_scheme;
   }
   return in_layout(cut_tile(merge_maps(old, fresh), tile), layout);
+}
+
+FinestLevelOptions finest_options(const CityLayout& layout, std::optional<std::int32_t> epoch) {
+  return {layout.voxel_sizes.front(), has_channel(layout, "intensity"), has_labels(layout), epoch};
+}
+
+VoxelMap finish_tile(const TileId& tile, std::vector<EpochSums> epochs, const CityLayout& layout) {
+  const std::vector<SeenVoxel> seen =
+      has_channel(layout, "first_epoch") ? seen_voxels(epochs) : std::vector<SeenVoxel>();
+  VoxelMap map = map_of_sums(sums_of_all(std::move(epochs)), finest_options(layout, std::nullopt), layout);
+  add_epochs(map.levels.front().channels(), seen);
+  complete(map, layout.voxel_sizes);
+  return in_layout(cut_tile(map, tile), layout);
 }
 
 VoxelMap in_layout(VoxelMap map, const CityLayout& layout) {

@@ -38,6 +38,19 @@ CityLayout merged_layout(const CityLayout& city, const CityLayout& added);
 VoxelMap finish_tile(const TileId& tile, VoxelBlocks sums, const FinestLevelOptions& finest,
                      const std::optional<VoxelMap>& before, const CityLayout& added, const CityLayout& layout);
 
+/// What the finest level of points of this layout is like; `epoch` is that of all of them.
+FinestLevelOptions finest_options(const CityLayout& layout, std::optional<std::int32_t> epoch);
+
+/// Sums of the points of one epoch.
+struct EpochSums {
+  std::int32_t epoch = 0;
+  VoxelBlocks sums;
+};
+
+/// The map of all sums of a tile and its margin, cut to the tile. Where the layout has epochs, those of a voxel are the
+/// first and the last whose sums have it. `epochs` rise.
+VoxelMap finish_tile(const TileId& tile, std::vector<EpochSums> epochs, const CityLayout& layout);
+
 /// A map with all attributes of a layout: where it lacks one, voxels get what merge_maps() gives them.
 VoxelMap in_layout(VoxelMap map, const CityLayout& layout);
 

@@ -11,18 +11,8 @@
 #include "vdbmap/store/tile_finish.h"
 
 namespace vdbmap {
-namespace {
-
-FinestLevelOptions finest_options(const TileRenewal& renewal) {
-  const std::vector<std::string>& channels = renewal.added.channels;
-  return {renewal.layout.voxel_sizes.front(), std::ranges::count(channels, "intensity") > 0,
-          std::ranges::count(channels, "label") > 0, renewal.epoch};
-}
-
-}  // namespace
-
 std::vector<CityTile> renew_tiles(std::span<const TileId> ids, const TileRenewal& renewal) {
-  const FinestLevelOptions finest = finest_options(renewal);
+  const FinestLevelOptions finest = finest_options(renewal.added, renewal.epoch);
   const double margin = neighbor_margin(renewal.layout.voxel_sizes);
   std::vector<std::optional<CityTile>> saved(ids.size());
   TileNeighborhood before(renewal.base);

@@ -38,11 +38,6 @@ std::vector<BlockPart> parts_of(const SortedPoints& points, std::int32_t margin,
   return parts;
 }
 
-void add_part(BlockContent& content, BlockContent part) {
-  content.sums = merge_blocks(std::move(content.sums), std::move(part.sums));
-  content.votes = content.votes.empty() ? std::move(part.votes) : merge_votes(content.votes, part.votes);
-}
-
 }  // namespace
 
 std::map<TileId, BlockContent> split_by_tile(BlockKey block, BlockContent content, std::int32_t margin,
@@ -87,7 +82,7 @@ void TileSums::add(const SortedPoints& points) {
     tile.num_bytes -= bytes_of(*targets.back());
     num_bytes_ -= bytes_of(*targets.back());
   }
-  parallel_for(parts.size(), [&](std::size_t i) { add_part(*targets[i], std::move(parts[i].content)); });
+  parallel_for(parts.size(), [&](std::size_t i) { add_content(*targets[i], std::move(parts[i].content)); });
   for (std::size_t i = 0; i < parts.size(); ++i) {
     tiles_[parts[i].tile].num_bytes += bytes_of(*targets[i]);
     num_bytes_ += bytes_of(*targets[i]);

@@ -35,6 +35,7 @@ JobPlan full_plan() {
   plan.files.inputs.range = RangeLimits{2.5, std::numeric_limits<double>::infinity()};
   plan.save.density = 0.1F;
   plan.keep_epochs = 4;
+  plan.keeps_parts = true;
   plan.num_buckets = 12;
   MapInput scan{{"/scans/3.bin", std::nullopt}};
   scan.map_from_scan = Eigen::Isometry3d(Eigen::AngleAxisd(0.1, Eigen::Vector3d(1, 2, 3).normalized()));
@@ -63,6 +64,7 @@ TEST(JobPlan, ComesBackAsItWas) {
   EXPECT_EQ(back.files.inputs.range->min, 2.5);
   EXPECT_EQ(back.files.inputs.range->max, std::numeric_limits<double>::infinity());
   EXPECT_EQ(back.save.density, 0.1F);
+  EXPECT_TRUE(back.keeps_parts);
   EXPECT_EQ(back.sources[0].input.scan, plan.sources[0].input.scan);
   EXPECT_EQ(back.sources[0].num_bytes, 1'000'000'000'000U);
   // Bit for bit: sums count in steps of 1.5 um.
@@ -85,8 +87,8 @@ TEST(JobPlan, WhatCannotBeIsRefusedWithItsPlace) {
     EXPECT_NE(at, std::string::npos) << old_part;
     return test::io_error_of([&] { parse_job_plan(text.replace(at, old_part.size(), new_part), "job.json"); });
   };
-  EXPECT_EQ(error_with("\"version\": 1", "\"version\": 2"),
-            "job.json: version is 2, newer than the 1 that this program knows");
+  EXPECT_EQ(error_with("\"version\": 2", "\"version\": 3"),
+            "job.json: version is 3, newer than the 2 that this program knows");
   EXPECT_EQ(error_with("vdbmap job", "vdbmap city"), "job.json: format is not 'vdbmap job'");
   EXPECT_EQ(error_with("\"buckets\": 12", "\"buckets\": 0"), "job.json: buckets is 0");
   EXPECT_EQ(error_with("\"bytes\":5", "\"bytes\":-5"), "job.json: sources[1].bytes is no whole number from 0 on");

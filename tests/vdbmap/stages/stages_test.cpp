@@ -101,6 +101,31 @@ TEST_F(Stages, GiveTheBytesOfABuild) {
   expect_built(inputs, options(3));
 }
 
+TEST_F(Stages, KeepThePartsThatABuildKeeps) {
+  const std::vector<MapInput> inputs = three_files();
+  JobOptions keeping = options(3);
+  keeping.keeps_parts = true;
+  keeping.files.build.epsg = 25832;
+  const Job job = plan(inputs, keeping);
+  run(job);
+  EXPECT_TRUE(run(job).was_published);
+  CityBuildOptions build;
+  build.files = keeping.files;
+  build.keeps_parts = true;
+  build_city(folder_ / "built", inputs, build);
+  EXPECT_TRUE(test::files_of_city(folder_ / "built") == test::files_of_city(folder_ / "city"));
+  EXPECT_TRUE(keeps_parts(open_city(folder_ / "city").manifest));
+
+  JobOptions adding = options(4);
+  adding.adds = true;
+  try {
+    plan_job(folder_ / "more", {file("d.ply", piece_at(20, 4))}, adding);
+    ADD_FAILURE();
+  } catch (const std::invalid_argument& error) {
+    EXPECT_TRUE(std::string(error.what()).ends_with("city: keeps the sums of its sources: add to it by build --into"));
+  }
+}
+
 TEST_F(Stages, ThreadsMemoryJobsAndOrderChangeNoByteOfAPart) {
   std::vector<MapInput> inputs = three_files();
   const Job first = plan(inputs);

@@ -9,6 +9,7 @@
 
 #include "tests/support/city_folders.h"
 #include "tests/support/folders.h"
+#include "tests/support/laz_bytes.h"
 #include "tests/support/raw_files.h"
 #include "tests/support/sample_maps.h"
 #include "tests/support/synthetic_scene.h"
@@ -115,6 +116,11 @@ TEST_F(CityBuild, ALargeFileIsReadInPieces) {
   const CityBuilt built = build_city(city(), {large}, little);
   expect_tiles_of(build_map_from_files({large}).map);
   EXPECT_EQ(built.added[0].num_points, cloud.size());
+
+  const std::string las = test::read_raw(folder_ / "large.las");
+  test::write_raw(folder_ / "large.laz", test::compress_las(las, {.points_per_chunk = 5'000, .chunk_sizes = {}}));
+  build_city(folder_ / "compressed", {{{folder_ / "large.laz", {}}}}, little);
+  EXPECT_EQ(test::difference(load_map_or_city(folder_ / "compressed"), load_map_or_city(city())), "");
 
   // The first point lies astray: what anchors the map is told by all pieces together.
   cloud.positions.front() = Eigen::Vector3d(0, 0, 1);

@@ -21,6 +21,7 @@ CityManifest sample_manifest() {
   manifest.tiles = {{{-2, 7}, "0123456789abcdef0123", 123'456, 99, {40, 4}, {{-128.1, 448, 0.3}, {-64, 512, 9}}},
                     {{0, -1}, "00000000000000000001", 7, 1, {1, 1}, {{0, -0.1, 0}, {0.1, 0, 0.1}}}};
   manifest.sources = {{"a \"b\".las", "0123456789abcdef0123456789abcdef", 100, 3}};
+  manifest.parts = {{"0123456789abcdef0123456789abcdef", "00112233445566778899aabbccddeeff", 4'567}};
   return manifest;
 }
 
@@ -80,12 +81,26 @@ TEST(CityManifest, WhatCannotBeIsNamedWithItsPlace) {
       {"[40,4]", "[40]", "tiles[0].voxels is no list of 2"},
       {"[40,4]", "[0,4]", "tiles[0].voxels is no list of 2 numbers of voxels above 0"},
       {"\"x\":0", "\"x\":-3", "tiles[1] is out of order"},
+      {"{\"source\":\"0", "{\"source\":\"1", "parts[0].source is no source"},
+      {"\"00112233", "\"../../33", "parts[0].hash is no hash"},
+      {"\"bytes\":4567", "\"bytes\":4.5", "parts[0].bytes is no whole number"},
+      {"\"parts\": [", "\"parts\": 3, \"x\": [", "parts is no list"},
       {"\"points\":100", "\"points\":-1", "sources[0].points is no whole number from 0 on"},
   };
   for (const auto& [from, to, expected] : changes) {
     const std::string problem = problem_of(replaced(text_of(sample_manifest()), from, to));
     EXPECT_NE(problem.find("map.json: " + expected), std::string::npos) << from << ": " << problem;
   }
+}
+
+TEST(CityManifest, PartsAreKeptOfEachSourceOrOfNone) {
+  CityManifest manifest = sample_manifest();
+  EXPECT_TRUE(keeps_parts(manifest));
+  EXPECT_EQ(find_part(manifest, manifest.sources[0].hash)->num_bytes, 4'567U);
+  EXPECT_FALSE(find_part(manifest, "ffff"));
+  manifest.sources.push_back({"c.las", "1123456789abcdef0123456789abcdef", 100, 3});
+  EXPECT_FALSE(keeps_parts(manifest));  // another writer may add what it keeps no part of
+  EXPECT_FALSE(keeps_parts(CityManifest()));
 }
 
 TEST(CityManifest, CountsATileAsItsMapDoes) {

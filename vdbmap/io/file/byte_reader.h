@@ -94,6 +94,10 @@ class ByteReader {
   /// Throws IoError about the line last read: "path:LINE: reason".
   [[noreturn]] void fail_line(const std::string& reason) const;
 
+  /// Bytes of the file, wherever the next read is: of a reader on demand no others are read. The view lives as long as
+  /// the reader, or until they are forgotten. The caller has checked that they are in the file.
+  std::string_view bytes_at(std::uint64_t begin, std::uint64_t count) const { return view(begin, count); }
+
   /// All bytes of the file, wherever the next read is; the view lives as long as the reader.
   std::string_view all() const { return view(0, size_); }
 

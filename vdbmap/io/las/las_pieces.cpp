@@ -13,6 +13,7 @@
 #include "vdbmap/io/las/las_records.h"
 #include "vdbmap/io/las/las_reference_system.h"
 #include "vdbmap/io/laz/laszip_record.h"
+#include "vdbmap/io/laz/laz_points.h"
 #include "vdbmap/io/points/color_range.h"
 #include "vdbmap/io/points/point_format.h"
 
@@ -60,6 +61,8 @@ struct LasPieces::State {
   std::size_t most_points;
   std::uint64_t num_points = 0;
   std::uint64_t next_point = 0;
+  std::optional<laz::LazChunks> chunks;  // of compressed points
+  std::size_t next_chunk = 0;
   PointSurvey survey;
   ReadResult about;  // without a cloud
 
@@ -84,14 +87,40 @@ struct LasPieces::State {
     next_point += cloud.size();
   }
 
+  // The next chunks: `at_once` points at most, or one chunk.
+  PointCloud read_chunks(std::size_t at_once) {
+    file.forget_before(chunks->begin_of(next_chunk));
+    const std::size_t count = chunks->count_within(next_chunk, at_once);
+    laz::LazChunks::Points points = chunks->read(next_chunk, count);
+    survey.has_dropped = survey.has_dropped || points.has_left_out;
+    next_chunk += count;
+    next_point += points.cloud.size();
+    return std::move(points.cloud);
+  }
+
   PointCloud read_cloud() {
+    if (chunks) return read_chunks(most_points);
     PointCloud cloud = make_las_cloud(header, size_of_next());
     read_into(cloud);
     return cloud;
   }
 
-  // In small pieces, all in the same memory.
   void make_survey() {
+    if (chunks) {
+      survey_chunks();
+    } else {
+      survey_records();
+    }
+    next_point = 0;
+    next_chunk = 0;
+  }
+
+  void survey_chunks() {
+    while (next_point < num_points && !survey.has_dropped) survey.add(read_chunks(most_points));
+  }
+
+  // In small pieces, all in the same memory.
+  void survey_records() {
     constexpr std::size_t kPointsAtOnce = 1 << 14;
     const std::size_t points_a_piece = std::exchange(most_points, std::min(most_points, kPointsAtOnce));
     PointCloud cloud;
@@ -101,7 +130,6 @@ struct LasPieces::State {
       survey.add(cloud);
     }
     most_points = points_a_piece;
-    next_point = 0;
   }
 };
 
@@ -115,11 +143,19 @@ std::optional<LasPieces> LasPieces::open(const std::filesystem::path& path, cons
   if (detect_point_format(path) != PointFormat::kLas) return std::nullopt;
   auto state = std::make_unique<State>(path, most_points);
   const LasRecords records = read_las_records(state->file, state->header);
-  if (state->header.is_compressed || laz::is_compressed(records.records)) return std::nullopt;
-  const LasPointCount count = count_las_points(state->file, state->header, records);
+  LasPointCount count;
+  std::uint64_t most_in_one_piece = most_points;
+  if (state->header.is_compressed || laz::is_compressed(records.records)) {
+    state->chunks = laz::LazChunks::find(state->file, state->header, records);
+    if (!state->chunks) return std::nullopt;
+    count.num_points = state->chunks->num_points();
+    most_in_one_piece *= 2;  // decoding takes longer than all that follows, and pieces are decoded twice
+  } else {
+    count = count_las_points(state->file, state->header, records);
+  }
   const LasReferenceSystem system = find_reference_system(state->header, records.records);
   const bool is_judged_whole = system.kind == CoordinateKind::kGeographic || system.kind == CoordinateKind::kGeocentric;
-  if (count.num_points <= most_points || is_judged_whole || options.is_in_sensor_frame) return std::nullopt;
+  if (count.num_points <= most_in_one_piece || is_judged_whole || options.is_in_sensor_frame) return std::nullopt;
 
   state->num_points = count.num_points;
   state->make_survey();

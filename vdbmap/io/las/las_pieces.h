@@ -10,14 +10,15 @@
 
 namespace vdbmap {
 
-/// Reads a large LAS file piece by piece: together the pieces are the cloud that read_points() gives, one after the
-/// other. What only all points tell, the scale of the colours and whether an attribute is known, is found in a first
-/// walk through the file.
+/// Reads a large LAS or LAZ file piece by piece: together the pieces are the cloud that read_points() gives, one after
+/// the other. What only all points tell, the scale of the colours and whether an attribute is known, is found in a
+/// first walk through the file.
 class LasPieces {
  public:
-  /// Nothing for other formats, compressed points, files of no more than `most_points`, and those that have points
-  /// which read_points() drops or coordinates that it judges as a whole: they must be read in one piece. Throws IoError
-  /// as read_points() does.
+  /// A piece has `most_points` or less; of compressed points one chunk may have more. Nothing for other formats, files
+  /// of no more than `most_points` or, compressed, twice as many, LAZ files in one chunk or with anything damaged, and
+  /// those that have points which read_points() drops or coordinates that it judges as a whole: they must be read in
+  /// one piece. Throws IoError as read_points() does.
   static std::optional<LasPieces> open(const std::filesystem::path& path, const ReadOptions& options,
                                        std::size_t most_points);
   ~LasPieces();

@@ -28,7 +28,7 @@ std::uint64_t end_of_points(const ByteReader& file, const LasRecords& records) {
 }
 
 std::string_view bytes_between(const ByteReader& file, std::uint64_t begin, std::uint64_t end) {
-  return file.all().substr(begin, end - begin);
+  return file.bytes_at(begin, end - begin);
 }
 
 // The header's number, where one of the two may be it.

@@ -14,18 +14,21 @@ struct Place {
   std::uint64_t begin = 0;
   std::uint64_t table = 0;
 
-  bool is_possible(std::string_view bytes) const {
-    return table >= begin && table <= bytes.size() && bytes.size() - table >= kTableStart;
+  bool is_possible(const ByteReader& file) const {
+    return table >= begin && table <= file.size() && file.size() - table >= kTableStart;
   }
 };
 
 // Writers that cannot go back to the front of the points say it in the last 8 bytes of the file.
-std::optional<Place> find_table(std::string_view bytes, const LasHeader& header) {
+std::optional<Place> find_table(const ByteReader& file, const LasHeader& header) {
   Place place{header.points_offset + kTableOffsetSize, 0};
-  if (place.begin > bytes.size()) return std::nullopt;
-  place.table = load<std::uint64_t>(bytes.data() + header.points_offset);
-  if (!place.is_possible(bytes)) place.table = load<std::uint64_t>(bytes.data() + bytes.size() - kTableOffsetSize);
-  return place.is_possible(bytes) ? std::optional(place) : std::nullopt;
+  if (place.begin > file.size()) return std::nullopt;
+  const auto offset_at = [&](std::uint64_t at) {
+    return load<std::uint64_t>(file.bytes_at(at, kTableOffsetSize).data());
+  };
+  place.table = offset_at(header.points_offset);
+  if (!place.is_possible(file)) place.table = offset_at(file.size() - kTableOffsetSize);
+  return place.is_possible(file) ? std::optional(place) : std::nullopt;
 }
 
 // No chunk takes less than its first point, so that there are no more entries than the chunks' bytes account for.
@@ -35,17 +38,17 @@ std::uint64_t least_chunk_size(const LasHeader& header) { return header.record_l
 
 std::optional<ChunkTable> read_chunk_table(const ByteReader& file, const LasHeader& header,
                                            const LaszipRecord& laszip) {
-  const std::string_view bytes = file.all();
-  const std::optional<Place> place = find_table(bytes, header);
+  const std::optional<Place> place = find_table(file, header);
   if (!place) return std::nullopt;
   const std::uint64_t available = place->table - place->begin;
-  const auto version = load<std::uint32_t>(bytes.data() + place->table);
-  const auto count = load<std::uint32_t>(bytes.data() + place->table + 4);
+  const std::string_view bytes = file.bytes_at(place->table, file.size() - place->table);
+  const auto version = load<std::uint32_t>(bytes.data());
+  const auto count = load<std::uint32_t>(bytes.data() + 4);
   if (version != 0 || count > available / least_chunk_size(header)) return std::nullopt;
 
   ChunkTable table{place->table, {}};
   if (count == 0) return table;
-  ArithmeticDecoder decoder(bytes.substr(place->table + kTableStart));
+  ArithmeticDecoder decoder(bytes.substr(kTableStart));
   IntegerDecoder<32> integers(2);
   ChunkSize last;
   std::uint64_t num_bytes = 0;

@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <string>
+#include <string_view>
 #include <utility>
 
 #include "vdbmap/core/error.h"
@@ -24,12 +25,11 @@ struct Source {
 };
 
 std::string_view bytes_of(const Source& source, const Chunk& chunk) {
-  return source.file.all().substr(chunk.begin, chunk.end - chunk.begin);
+  return source.file.bytes_at(chunk.begin, chunk.end - chunk.begin);
 }
 
-// Why a chunk cannot be decoded at all; empty where it can be tried.
-std::string fault_of_front(const Source& source, const Chunk& chunk) {
-  const std::string_view bytes = bytes_of(source, chunk);
+// Why a chunk of these bytes cannot be decoded at all; empty where it can be tried.
+std::string fault_of_front(const Source& source, const Chunk& chunk, std::string_view bytes) {
   if (bytes.size() < ChunkDecoder::least_size(source.laszip)) {
     return "has " + std::to_string(bytes.size()) + " bytes, expected at least " +
            std::to_string(ChunkDecoder::least_size(source.laszip));
@@ -45,12 +45,12 @@ std::string fault_of_front(const Source& source, const Chunk& chunk) {
   return "";
 }
 
-// Decodes a chunk block by block, each given to take(first point in the chunk, records, number); says what is wrong
-// with it, or nothing. What was taken of a chunk that has a fault is worth nothing.
+// Decodes a chunk of these bytes block by block, each given to take(first point in the chunk, records, number); says
+// what is wrong with it, or nothing. What was taken of a chunk that has a fault is worth nothing.
 template <typename Take>
-std::string decode_chunk(const Source& source, const Chunk& chunk, const Take& take) {
-  if (std::string fault = fault_of_front(source, chunk); !fault.empty()) return fault;
-  ChunkDecoder decoder(source.laszip, bytes_of(source, chunk), LayerChoice::kOfCloud);
+std::string decode_chunk(const Source& source, const Chunk& chunk, std::string_view bytes, const Take& take) {
+  if (std::string fault = fault_of_front(source, chunk, bytes); !fault.empty()) return fault;
+  ChunkDecoder decoder(source.laszip, bytes, LayerChoice::kOfCloud);
   std::vector<char> records(std::min<std::uint64_t>(kPointsPerBlock, chunk.num_points) * source.header.record_length);
   for (std::uint64_t first = 0; first < chunk.num_points; first += kPointsPerBlock) {
     const auto count = static_cast<std::size_t>(std::min<std::uint64_t>(kPointsPerBlock, chunk.num_points - first));
@@ -69,7 +69,7 @@ void drop_incredible_chunks(const Source& source, ChunkList& list) {
     const Chunk& chunk = list.chunks[i];
     if (chunk.num_points <= chunk.end - chunk.begin) return;
     const bool is_possible = chunk.num_points / kMostPointsPerByte <= chunk.end - chunk.begin;
-    is_true[i] = is_possible && decode_chunk(source, chunk, [](auto...) {}).empty() ? 1 : 0;
+    is_true[i] = is_possible && decode_chunk(source, chunk, bytes_of(source, chunk), [](auto...) {}).empty() ? 1 : 0;
   });
   const auto first = std::ranges::find(is_true, 0);
   if (first == is_true.end()) return;
@@ -89,15 +89,19 @@ struct Outcome {
   std::vector<std::size_t> withheld;
 };
 
-std::vector<Outcome> decode_chunks(const Source& source, const std::vector<Chunk>& chunks,
+std::vector<Outcome> decode_chunks(const Source& source, std::span<const Chunk> chunks,
                                    const std::vector<std::size_t>& first_points, PointCloud& cloud) {
+  // A reader on demand serves one thread at a time.
+  std::vector<std::string_view> bytes;
+  for (const Chunk& chunk : chunks) bytes.push_back(bytes_of(source, chunk));
   std::vector<Outcome> outcomes(chunks.size());
   parallel_for(chunks.size(), [&](std::size_t i) {
     Outcome& outcome = outcomes[i];
-    outcome.fault = decode_chunk(source, chunks[i], [&](std::size_t first, const char* records, std::size_t count) {
-      store_las_points(cloud, first_points[i] + first, records, count, source.header);
-      append_withheld(outcome.withheld, first_points[i] + first, records, count, source.header);
-    });
+    outcome.fault =
+        decode_chunk(source, chunks[i], bytes[i], [&](std::size_t first, const char* records, std::size_t count) {
+          store_las_points(cloud, first_points[i] + first, records, count, source.header);
+          append_withheld(outcome.withheld, first_points[i] + first, records, count, source.header);
+        });
   });
   return outcomes;
 }
@@ -107,7 +111,7 @@ void refuse_without_points(const ByteReader& file, const LasPoints& points) {
   throw IoError::malformed(file.path(), "no point can be read: " + points.findings.front().text());
 }
 
-std::vector<std::size_t> first_points_of(const std::vector<Chunk>& chunks) {
+std::vector<std::size_t> first_points_of(std::span<const Chunk> chunks) {
   std::vector<std::size_t> first_points;
   std::size_t sum = 0;
   for (const Chunk& chunk : chunks) {
@@ -118,6 +122,43 @@ std::vector<std::size_t> first_points_of(const std::vector<Chunk>& chunks) {
 }
 
 }  // namespace
+
+std::optional<LazChunks> LazChunks::find(const ByteReader& file, const LasHeader& header, const LasRecords& records) {
+  const LaszipRecord laszip = read_laszip_record(file.path(), header, records.records);
+  if (!laszip.is_chunked) return std::nullopt;
+  ChunkList list = find_chunks(file, header, records, laszip);
+  const bool is_credible =
+      std::ranges::all_of(list.chunks, [](const Chunk& c) { return c.num_points <= c.end - c.begin; });
+  if (!list.findings.empty() || !is_credible) return std::nullopt;
+  return LazChunks(file, header, laszip, std::move(list.chunks));
+}
+
+std::uint64_t LazChunks::num_points() const {
+  std::uint64_t sum = 0;
+  for (const Chunk& chunk : chunks_) sum += chunk.num_points;
+  return sum;
+}
+
+std::size_t LazChunks::count_within(std::size_t first, std::size_t most_points) const {
+  std::size_t count = 1;
+  std::uint64_t num_points = chunks_[first].num_points;
+  for (; first + count < chunks_.size(); ++count) {
+    num_points += chunks_[first + count].num_points;
+    if (num_points > most_points) break;
+  }
+  return count;
+}
+
+LazChunks::Points LazChunks::read(std::size_t first, std::size_t count) const {
+  const std::span<const Chunk> chunks = std::span(chunks_).subspan(first, count);
+  const std::vector<std::size_t> first_points = first_points_of(chunks);
+  Points points;
+  points.cloud = make_las_cloud(*header_, first_points.back() + chunks.back().num_points);
+  for (const Outcome& outcome : decode_chunks({*file_, *header_, laszip_}, chunks, first_points, points.cloud)) {
+    points.has_left_out = points.has_left_out || !outcome.fault.empty() || !outcome.withheld.empty();
+  }
+  return points;
+}
 
 LasPoints read_laz_points(const ByteReader& file, const LasHeader& header, const LasRecords& records) {
   const Source source{file, header, read_laszip_record(file.path(), header, records.records)};

@@ -24,7 +24,8 @@ struct ReadLevel {
   bool has_color;
 };
 
-/// Reads what make_voxel_grid() made. Throws IoError naming `path`, the grid and what is missing or wrong.
-ReadLevel read_voxel_grid(const openvdb::points::PointDataGrid& grid, const std::filesystem::path& path);
+/// Reads what make_voxel_grid() made, and takes the leaves of the grid. Throws IoError naming `path`, the grid and what
+/// is missing or wrong.
+ReadLevel read_voxel_grid(openvdb::points::PointDataGrid& grid, const std::filesystem::path& path);
 
 }  // namespace vdbmap

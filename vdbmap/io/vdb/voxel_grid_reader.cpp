@@ -2,12 +2,14 @@
 #include <algorithm>
 #include <cstdint>
 #include <filesystem>
+#include <memory>
 #include <numeric>
-#include <optional>
+#include <span>
 #include <string>
 #include <vector>
 
 #include "vdbmap/core/error.h"
+#include "vdbmap/core/parallel_tasks.h"
 #include "vdbmap/core/voxel_assembly.h"
 #include "vdbmap/io/vdb/channel_codes.h"
 #include "vdbmap/io/vdb/map_grids.h"
@@ -48,18 +50,39 @@ std::vector<std::string> optional_attributes(const PointLeaf& leaf) {
   return names;
 }
 
-// Reads the leaves of one grid; every refusal names the grid and the attribute.
+// A leaf of the file, which lies in one block of voxels.
+struct FileLeaf {
+  BlockKey block;
+  std::unique_ptr<PointLeaf> leaf;
+};
+
+// The voxels of a block.
+struct ReadBlock {
+  std::vector<ReadVoxel> voxels;
+  VoxelChannels channels;            // in the order of the file
+  std::vector<std::uint32_t> order;  // of the voxels in the tree
+};
+
+// Reads the leaves of one grid, block by block; every refusal names the grid and the attribute. What is read of the
+// file is freed on the way: a map and its file would take two to three times the memory of the map.
 class GridReader {
  public:
-  GridReader(const points::PointDataGrid& grid, const std::filesystem::path& path) : grid_(grid), path_(path) {}
+  GridReader(points::PointDataGrid& grid, const std::filesystem::path& path) : grid_(grid), path_(path) {}
 
   ReadLevel read() {
     check_transform();
-    voxels_.reserve(count_voxels());
-    for (auto leaf = grid_.tree().cbeginLeaf(); leaf; ++leaf) {
-      if (leaf->getLastValue() > 0) read_leaf(*leaf);
+    std::vector<FileLeaf> leaves = take_leaves();
+    if (!leaves.empty()) optional_ = optional_attributes(*leaves.front().leaf);
+    VoxelAssembly assembly(voxel_size_, count_voxels(leaves));
+    std::ranges::stable_sort(leaves, {}, &FileLeaf::block);
+    std::vector<ReadBlock> blocks(4 * num_threads());
+    for (std::span<FileLeaf> rest = leaves; !rest.empty();) {
+      std::vector<std::span<FileLeaf>> groups;
+      while (!rest.empty() && groups.size() < blocks.size()) groups.push_back(take_block(rest));
+      parallel_tasks(groups.size(), [&](std::size_t i) { blocks[i] = read_block(groups[i]); });
+      for (std::size_t i = 0; i < groups.size(); ++i) append(assembly, blocks[i]);
     }
-    return {assemble(), has_optional(kColor)};
+    return {assembly.finish(), has_optional(kColor)};
   }
 
  private:
@@ -87,14 +110,26 @@ class GridReader {
     return CodeReader<Array>(*array);
   }
 
+  // Those with points, in the order of the file. The grid has none afterwards.
+  std::vector<FileLeaf> take_leaves() {
+    std::vector<PointLeaf*> stolen;
+    grid_.tree().stealNodes(stolen);
+    std::vector<std::unique_ptr<PointLeaf>> owned(stolen.begin(), stolen.end());
+    std::vector<FileLeaf> leaves;
+    for (std::unique_ptr<PointLeaf>& leaf : owned) {
+      check_leaf(*leaf);
+      if (leaf->getLastValue() == 0) continue;
+      const BlockKey block = block_of_voxel(first_child_of_voxel(leaf->origin(), kVoxelsPerCell));
+      leaves.push_back({block, std::move(leaf)});
+    }
+    return leaves;
+  }
+
   // What the leaves promise, before memory is taken for it.
-  std::size_t count_voxels() const {
+  std::size_t count_voxels(const std::vector<FileLeaf>& leaves) const {
     const std::uint64_t most = most_voxels_of_file(std::filesystem::file_size(path_));
     std::uint64_t count = 0;
-    for (auto leaf = grid_.tree().cbeginLeaf(); leaf; ++leaf) {
-      check_leaf(*leaf);
-      count += leaf->getLastValue();
-    }
+    for (const FileLeaf& leaf : leaves) count += leaf.leaf->getLastValue();
     if (count > most) {
       fail("holds " + std::to_string(count) + " voxels, a file of its size at most " + std::to_string(most));
     }
@@ -115,10 +150,32 @@ class GridReader {
     if (!is_inside) fail("has a voxel beyond the addressable range");
   }
 
-  void read_leaf(const PointLeaf& leaf) {
-    const std::size_t first = voxels_.size();
-    voxels_.resize(first + leaf.getLastValue());
-    const std::span voxels = std::span(voxels_).subspan(first);
+  // The leaves of the first block.
+  static std::span<FileLeaf> take_block(std::span<FileLeaf>& rest) {
+    const auto end = std::ranges::find_if(rest, [&](const FileLeaf& leaf) { return leaf.block != rest[0].block; });
+    const auto count = static_cast<std::size_t>(end - rest.begin());
+    const std::span<FileLeaf> block = rest.first(count);
+    rest = rest.subspan(count);
+    return block;
+  }
+
+  // The leaves are gone afterwards.
+  ReadBlock read_block(std::span<FileLeaf> leaves) const {
+    ReadBlock block;
+    for (FileLeaf& leaf : leaves) {
+      read_leaf(*leaf.leaf, block);
+      leaf.leaf.reset();
+    }
+    block.order.resize(block.voxels.size());
+    std::iota(block.order.begin(), block.order.end(), 0u);
+    std::ranges::sort(block.order, {}, [&](std::uint32_t i) { return block.voxels[i].key; });
+    return block;
+  }
+
+  void read_leaf(const PointLeaf& leaf, ReadBlock& block) const {
+    const std::size_t first = block.voxels.size();
+    block.voxels.resize(first + leaf.getLastValue());
+    const std::span voxels = std::span(block.voxels).subspan(first);
     read_places(leaf, voxels);
     read_records(leaf, voxels);
     check_same_attributes(leaf);
@@ -128,14 +185,12 @@ class GridReader {
       const auto codes = require<ChannelArray<Value>>(leaf, name);
       for (std::size_t i = 0; i < voxels.size(); ++i) {
         if (!is_finite(codes[i])) fail(std::string("has a voxel whose ") + name + " is not finite");
-        (channels_.*channel).push_back(codes[i]);
+        (block.channels.*channel).push_back(codes[i]);
       }
     });
   }
 
-  bool has_optional(const std::string& name) const {
-    return optional_ && std::ranges::find(*optional_, name) != optional_->end();
-  }
+  bool has_optional(const std::string& name) const { return std::ranges::find(optional_, name) != optional_.end(); }
 
   // The cell and the fixed-point position in it give the voxel and the mean within it.
   void read_places(const PointLeaf& leaf, std::span<ReadVoxel> voxels) const {
@@ -177,10 +232,8 @@ class GridReader {
     }
   }
 
-  void check_same_attributes(const PointLeaf& leaf) {
-    const std::vector<std::string> found = optional_attributes(leaf);
-    if (optional_.value_or(found) != found) fail("has attributes that only some of its leaves have");
-    optional_ = found;
+  void check_same_attributes(const PointLeaf& leaf) const {
+    if (optional_ != optional_attributes(leaf)) fail("has attributes that only some of its leaves have");
   }
 
   void read_color(const PointLeaf& leaf, std::span<ReadVoxel> voxels) const {
@@ -192,36 +245,26 @@ class GridReader {
   }
 
   // From the order of cells into the order of voxels.
-  VoxelLevel assemble() const {
-    std::vector<std::uint32_t> order(voxels_.size());
-    std::iota(order.begin(), order.end(), 0u);
-    parallel_sort(order, [&](auto a, auto b) { return voxels_[a].key < voxels_[b].key; });
-
-    VoxelAssembly assembly(voxel_size_, voxels_.size());
-    for (const std::uint32_t i : order) {
-      if (!assembly.add(voxels_[i].index, voxels_[i].record)) fail("holds a voxel twice");
+  void append(VoxelAssembly& assembly, const ReadBlock& block) const {
+    for (const std::uint32_t i : block.order) {
+      if (!assembly.add(block.voxels[i].index, block.voxels[i].record)) fail("holds a voxel twice");
     }
     for_each_channel([&](const char* /*name*/, auto channel) {
-      const auto& values = channels_.*channel;
+      const auto& values = block.channels.*channel;
       if (values.empty()) return;
-      auto& ordered = assembly.channels().*channel;
-      ordered.reserve(values.size());
-      for (const std::uint32_t i : order) ordered.push_back(values[i]);
+      for (const std::uint32_t i : block.order) (assembly.channels().*channel).push_back(values[i]);
     });
-    return assembly.finish();
   }
 
-  const points::PointDataGrid& grid_;
+  points::PointDataGrid& grid_;
   const std::filesystem::path& path_;
-  double voxel_size_ = 0;  // [m]
-  std::vector<ReadVoxel> voxels_;
-  VoxelChannels channels_;
-  std::optional<std::vector<std::string>> optional_;  // attributes that all leaves must have alike
+  double voxel_size_ = 0;              // [m]
+  std::vector<std::string> optional_;  // attributes that all leaves must have alike
 };
 
 }  // namespace
 
-ReadLevel read_voxel_grid(const points::PointDataGrid& grid, const std::filesystem::path& path) {
+ReadLevel read_voxel_grid(points::PointDataGrid& grid, const std::filesystem::path& path) {
   return GridReader(grid, path).read();
 }
 

@@ -8,6 +8,7 @@
 
 #include "tests/support/folders.h"
 #include "tests/support/las_bytes.h"
+#include "tests/support/laz_bytes.h"
 #include "tests/support/raw_files.h"
 #include "vdbmap/core/cloud_append.h"
 #include "vdbmap/core/error.h"
@@ -42,8 +43,13 @@ class LasPiecesTest : public testing::Test {
     return test::write_raw(folder_ / "large.las", file.bytes());
   }
 
+  std::filesystem::path write(const std::string& las, const test::LazLayout& layout) const {
+    return test::write_raw(folder_ / "large.laz", test::compress_las(las, layout));
+  }
+
   // All pieces together must be what reading the whole file gives.
-  static void expect_whole(const std::filesystem::path& path, std::size_t most_points, std::size_t num_pieces) {
+  static void expect_whole(const std::filesystem::path& path, std::size_t most_points, std::size_t num_pieces,
+                           std::size_t largest_piece) {
     const ReadResult whole = read_points(path);
     std::optional<LasPieces> pieces = LasPieces::open(path, {}, most_points);
     ASSERT_TRUE(pieces);
@@ -51,7 +57,7 @@ class LasPiecesTest : public testing::Test {
     std::size_t count = 0;
     while (!pieces->is_at_end()) {
       const ReadResult piece = pieces->next();
-      EXPECT_LE(piece.cloud.size(), most_points);
+      EXPECT_LE(piece.cloud.size(), largest_piece);
       EXPECT_EQ(piece.findings, whole.findings);
       EXPECT_EQ(piece.epsg, whole.epsg);
       EXPECT_EQ(piece.label_scheme, whole.label_scheme);
@@ -70,6 +76,10 @@ class LasPiecesTest : public testing::Test {
     EXPECT_EQ(cloud.times, whole.cloud.times);
   }
 
+  static void expect_whole(const std::filesystem::path& path, std::size_t most_points, std::size_t num_pieces) {
+    expect_whole(path, most_points, num_pieces, most_points);
+  }
+
   test::TemporaryFolder folder_;
 };
 
@@ -84,6 +94,42 @@ TEST_F(LasPiecesTest, AreTogetherTheWholeFile) {
 
 TEST_F(LasPiecesTest, OfMoreBytesThanAreReadAtOnce) {
   expect_whole(write(file_of(200'000, {.intensity = 5})), 60'000, 4);
+}
+
+TEST_F(LasPiecesTest, OfCompressedPointsAreChunks) {
+  const std::string las = file_of(100, {.intensity = 5, .classification = 6, .red = 60'000}).bytes();
+  expect_whole(write(las, {.points_per_chunk = 10, .chunk_sizes = {}}), 30, 4);
+  expect_whole(write(las, {.points_per_chunk = 20, .chunk_sizes = {}}), 45, 3);
+  expect_whole(write(las, {.points_per_chunk = 40, .chunk_sizes = {}}), 30, 3, 40);
+  expect_whole(write(las, {.chunk_sizes = {5, 70, 10, 1, 14}}), 30, 3, 70);
+  expect_whole(write(las, {.points_per_chunk = 10, .chunk_sizes = {}, .has_offset_behind = true}), 30, 4);
+  expect_whole(write(file_of(90, {.blue = 255}).bytes(), {.points_per_chunk = 30, .chunk_sizes = {}}), 30,
+               3);  // 8 bits
+  for (const unsigned format : {0, 2, 6, 7, 8}) {
+    expect_whole(write(test::random_las(format, 30'000, 3, format), {.points_per_chunk = 999, .chunk_sizes = {}}),
+                 7'000, 5);
+  }
+}
+
+TEST_F(LasPiecesTest, AreNotOfCompressedPointsThatAreNotWhole) {
+  const std::string las = file_of(100, {}).bytes();
+  const test::LazLayout tens = {.points_per_chunk = 10, .chunk_sizes = {}};
+  ASSERT_TRUE(LasPieces::open(write(las, tens), {}, 30));
+  EXPECT_FALSE(LasPieces::open(write(las, tens), {}, 50));
+  EXPECT_FALSE(LasPieces::open(write(las, {.version = 1, .is_chunked = false, .chunk_sizes = {}}), {}, 30));
+  EXPECT_FALSE(LasPieces::open(write(file_of(100, {.classification = 0x80}).bytes(), tens), {}, 30));  // withheld
+  EXPECT_FALSE(LasPieces::open(write(las, {.points_per_chunk = 10, .chunk_sizes = {}, .has_table = false}), {}, 30));
+  const std::string laz = test::compress_las(las, tens);
+  std::size_t num_damaged = 0;
+  for (std::size_t i = laz.size() / 2; i < laz.size() - 60; i += 7) {
+    std::string changed = laz;
+    changed[i] = static_cast<char>(changed[i] ^ 0x10);
+    const auto path = test::write_raw(folder_ / "changed.laz", changed);
+    if (read_points(path).findings.empty()) continue;  // what the byte says is possible, too
+    ++num_damaged;
+    EXPECT_FALSE(LasPieces::open(path, {}, 30)) << i;
+  }
+  EXPECT_GT(num_damaged, 5U);
 }
 
 TEST_F(LasPiecesTest, OfAFileThatEndsTooEarlyAreThosePointsThatAreThere) {

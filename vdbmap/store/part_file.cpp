@@ -1,21 +1,19 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "vdbmap/stages/part_file.h"
+#include "vdbmap/store/part_file.h"
 
 #include <algorithm>
 #include <bit>
 #include <cstring>
 #include <optional>
 #include <string_view>
-#include <tuple>
 #include <utility>
 
 #include "vdbmap/core/error.h"
-#include "vdbmap/core/parallel.h"
+#include "vdbmap/core/parallel_tasks.h"
 #include "vdbmap/io/file/atomic_file.h"
 #include "vdbmap/io/file/byte_reader.h"
 #include "vdbmap/store/content_hash.h"
 #include "vdbmap/store/json_field.h"
-#include "vdbmap/store/source_hash.h"
 #include "vdbmap/store/sums_file.h"
 
 namespace vdbmap {
@@ -24,7 +22,7 @@ namespace {
 using Json = nlohmann::ordered_json;
 
 constexpr const char* kPartName = "vdbmap part";
-constexpr std::int32_t kPartFormat = 1;
+constexpr std::int32_t kPartFormat = 2;
 
 // The end of a part: size of the description, its hash, and what tells parts from other files.
 constexpr std::string_view kMark = "VDBMPART";
@@ -49,9 +47,8 @@ Json json_of(const InputNotes& notes) {
   return json;
 }
 
-std::string description_of(const Job& job, std::size_t source, const PartNotes& found,
-                           const std::vector<PartTile>& tiles) {
-  Json json = {{"format", kPartName}, {"version", kPartFormat}, {"plan", job.key}, {"source", source}};
+std::string description_of(const std::string& made_for, const PartNotes& found, const std::vector<PartTile>& tiles) {
+  Json json = {{"format", kPartName}, {"version", kPartFormat}, {"made_for", made_for}};
   json["hash"] = found.source.hash;
   json["counted"] = found.source.num_points;
   json["has_color"] = found.kinds.has_color;
@@ -63,12 +60,12 @@ std::string description_of(const Job& job, std::size_t source, const PartNotes& 
   return json.dump(-1, ' ', false, Json::error_handler_t::replace);
 }
 
-std::string end_of(const std::string& description) {
+std::string end_of(const std::string& description, const std::string& hash) {
   std::uint64_t size = description.size();
   if constexpr (std::endian::native == std::endian::big) size = swap_bytes(size);
   std::string end(sizeof(size), '\0');
   std::memcpy(end.data(), &size, sizeof(size));
-  return end + hash_of_bytes(description) + std::string(kMark);
+  return end + hash + std::string(kMark);
 }
 
 InputNotes notes_of(const JsonField& field, const std::filesystem::path& file) {
@@ -112,73 +109,121 @@ std::vector<PartTile> part_tiles(const JsonField& field, std::uint64_t num_bytes
   return tiles;
 }
 
-// The description of a part that is whole, and how many bytes lie before it.
-std::pair<Json, std::uint64_t> read_description(const std::filesystem::path& path) {
+// The description of a part that is whole.
+struct Description {
+  Json json;
+  std::string hash;
+  std::uint64_t num_bytes_before;
+};
+
+Description read_description(const std::filesystem::path& path) {
   ByteReader file(path, ByteReader::Loading::kOnDemand);
   const char* const is_cut = "is no part, or was cut";
   if (file.size() < kEndSize) throw IoError::malformed(path, is_cut);
   file.seek(file.size() - kEndSize);
   const auto size = file.read_le<std::uint64_t>();
-  const std::string hash(file.bytes(ContentHash::kNumDigits));
+  std::string hash(file.bytes(ContentHash::kNumDigits));
   if (file.bytes(kMark.size()) != kMark || size > file.size() - kEndSize) throw IoError::malformed(path, is_cut);
   const std::uint64_t begin = file.size() - kEndSize - size;
   file.seek(begin);
   const std::string_view text = file.bytes(size);
   if (hash_of_bytes(text) != hash) throw IoError::malformed(path, "is damaged");
-  return {parse_json(text, path), begin};
+  return {parse_json(text, path), std::move(hash), begin};
+}
+
+void add_notes(InputNotes& notes, const InputNotes& of_source) {
+  notes.num_points += of_source.num_points;
+  notes.num_dropped += of_source.num_dropped;
+  notes.num_out_of_range += of_source.num_out_of_range;
+  notes.num_of_dropped_classes += of_source.num_of_dropped_classes;
+  notes.findings.insert(notes.findings.end(), of_source.findings.begin(), of_source.findings.end());
+  notes.foreign_units.insert(notes.foreign_units.end(), of_source.foreign_units.begin(), of_source.foreign_units.end());
 }
 
 }  // namespace
 
-void write_part(const Job& job, std::size_t source, const PartNotes& found, TileSums& sums) {
-  std::vector<TileId> ids = sums.tiles();
-  std::ranges::sort(ids, {}, [&](const TileId& id) { return std::tuple(bucket_of(id, job.plan.num_buckets), id); });
-  std::vector<PartTile> tiles(ids.size());
-  AtomicFile file(part_path(job.folder, source));
-  std::vector<std::string> packed(num_threads());
-  for (std::size_t begin = 0; begin < ids.size(); begin += packed.size()) {
-    const std::size_t count = std::min(packed.size(), ids.size() - begin);
-    parallel_for(count, [&](std::size_t i) {
-      packed[i] = pack_sums(sums.take(ids[begin + i]));
-      tiles[begin + i] = {ids[begin + i], 0, packed[i].size(), hash_of_bytes(packed[i])};
-    });
-    for (std::size_t i = 0; i < count; ++i) file.write(packed[i]);
-  }
-  const std::string description = description_of(job, source, found, tiles);
-  file.write(description);
-  file.write(end_of(description));
-  file.commit();
-  sync_folder(parts_path(job.folder));
+PartNotes to_be_kept(PartNotes found, const std::optional<int>& given_epsg) {
+  if (given_epsg) found.notes.epsg_of_files = given_epsg;
+  return found;
 }
 
-Part open_part(const Job& job, std::size_t source) {
-  const std::filesystem::path path = part_path(job.folder, source);
-  const auto [json, num_bytes] = read_description(path);
-  const JsonField root(json, "", path);
-  root.check_format(kPartName, kPartFormat);
-  if (root.at("plan").text() != job.key) throw IoError::malformed(path, "is of another plan");
-  if (root.at("source").count() != source) {
-    throw IoError::malformed(path, "is of source " + std::to_string(root.at("source").count()));
+CommonNotes common_notes(std::span<const PartNotes* const> sources) {
+  CommonNotes common;
+  InputAgreement agreement;
+  for (const PartNotes* found : sources) {
+    const std::filesystem::path& file = found->source.name;
+    agreement.add_epsg(file, found->notes.epsg_of_files);
+    if (found->kinds.has_labels) agreement.add_labels(file, found->notes.label_scheme);
+    common.kinds.add(found->kinds);
+    add_notes(common.notes, found->notes);
   }
-  const MapInput& input = job.plan.sources[source].input;
-  Part part{path, {}, part_tiles(root.at("tiles"), num_bytes)};
-  part.found.source = {source_name(input), root.at("hash").hash(ContentHash::kNumDigits), root.at("counted").count()};
+  common.notes.epsg_of_files = agreement.epsg();
+  common.notes.label_scheme = agreement.label_scheme();
+  return common;
+}
+
+std::string write_part(const std::filesystem::path& path, const std::string& made_for, const PartNotes& found,
+                       std::span<const TileId> ids, const PackedTile& packed) {
+  std::vector<PartTile> tiles(ids.size());
+  AtomicFile file(path);
+  std::vector<std::string> batch(num_threads());
+  for (std::size_t begin = 0; begin < ids.size(); begin += batch.size()) {
+    const std::size_t count = std::min(batch.size(), ids.size() - begin);
+    parallel_tasks(count, [&](std::size_t i) {
+      batch[i] = packed(ids[begin + i]);
+      tiles[begin + i] = {ids[begin + i], 0, batch[i].size(), hash_of_bytes(batch[i])};
+    });
+    for (std::size_t i = 0; i < count; ++i) file.write(batch[i]);
+  }
+  const std::string description = description_of(made_for, found, tiles);
+  std::string hash = hash_of_bytes(description);
+  file.write(description);
+  file.write(end_of(description, hash));
+  file.commit();
+  return hash;
+}
+
+Part open_part(const std::filesystem::path& path, const std::string& source_name,
+               const std::filesystem::path& source_file) {
+  const Description description = read_description(path);
+  const JsonField root(description.json, "", path);
+  root.check_format(kPartName, kPartFormat);
+  Part part{path, root.at("made_for").text(), description.hash, {}, {}};
+  part.tiles = part_tiles(root.at("tiles"), description.num_bytes_before);
+  part.found.source = {source_name, root.at("hash").hash(ContentHash::kNumDigits), root.at("counted").count()};
   part.found.kinds = {root.at("has_color").truth(), root.at("has_intensity").truth(), root.at("has_labels").truth()};
-  part.found.notes = notes_of(root.at("notes"), input.scan.file);
+  part.found.notes = notes_of(root.at("notes"), source_file);
   return part;
 }
 
-void add_tile_of_part(const Part& part, const PartTile& tile, VoxelBlocks& blocks) {
+std::string packed_tile(const Part& part, const PartTile& tile) {
   ByteReader file(part.path, ByteReader::Loading::kOnDemand);
   if (tile.num_bytes > file.size() || tile.offset > file.size() - tile.num_bytes) {
     throw IoError::malformed(part.path, "was cut");
   }
   file.seek(tile.offset);
-  const std::string_view bytes = file.bytes(tile.num_bytes);
+  std::string bytes(file.bytes(tile.num_bytes));
   if (hash_of_bytes(bytes) != tile.hash) {
-    throw IoError::malformed_at_byte(part.path, tile.offset, "the sums are damaged: remove the file and map it again");
+    throw IoError::malformed_at_byte(part.path, tile.offset,
+                                     "the sums of a tile are damaged: the file must go and be made anew");
   }
-  add_packed_sums(bytes, part.path, blocks);
+  return bytes;
+}
+
+void add_tile_of_part(const Part& part, const PartTile& tile, VoxelBlocks& blocks) {
+  add_packed_sums(packed_tile(part, tile), part.path, blocks);
+}
+
+std::vector<TileId> ids_of(const TilesOfParts& tiles) {
+  std::vector<TileId> ids;
+  for (const auto& [id, places] : tiles) ids.push_back(id);
+  return ids;
+}
+
+VoxelBlocks sums_of(std::span<const TileInPart> places) {
+  VoxelBlocks blocks;
+  for (const TileInPart& place : places) add_tile_of_part(*place.part, *place.tile, blocks);
+  return blocks;
 }
 
 }  // namespace vdbmap
