@@ -37,8 +37,6 @@ struct RayOptions {
   std::optional<std::filesystem::path> trajectory;
   std::vector<double> lever_arm;
   bool of_scans = false;  // whose poses are given
-
-  bool are_wanted() const { return trajectory || of_scans; }
 };
 
 struct BuildCommandOptions {
@@ -95,21 +93,22 @@ double seconds_since(std::chrono::steady_clock::time_point start) {
   return std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
 }
 
+SurveyTrack track_of(const RayOptions& rays) {
+  const Eigen::Vector3d lever_arm =
+      rays.lever_arm.empty() ? Eigen::Vector3d(Eigen::Vector3d::Zero()) : Eigen::Vector3d(rays.lever_arm.data());
+  return read_survey_track(*rays.trajectory, lever_arm);
+}
+
 // The places of the scans in their sequence, rays and all.
 MapExtras extras_of_survey(const VoxelMap& map, const ChosenInputs& chosen, const InputOptions& inputs,
                            const RayOptions& rays, const CommonOptions& common) {
-  const Eigen::Vector3d lever_arm =
-      rays.lever_arm.empty() ? Eigen::Vector3d(Eigen::Vector3d::Zero()) : Eigen::Vector3d(rays.lever_arm.data());
   Progress progress("following rays", chosen.inputs.size(), common);
   InputOptions options = inputs;
   options.on_scan_done = [&progress] { progress.advance(); };
-  SurveyRays survey(chosen.inputs, options, read_survey_track(*rays.trajectory, lever_arm));
+  SurveyRays survey(chosen.inputs, options, track_of(rays));
   MapExtras extras;
   extras.visibility = find_visibility(map, [&](const auto& take) { survey.for_each(take); });
-  if (survey.num_without_ray() > 0) {
-    spdlog::warn("{}: {} of {} points are of times without a pose and have no ray", rays.trajectory->string(),
-                 survey.num_without_ray(), survey.num_points());
-  }
+  survey.warn();
   return extras;
 }
 
@@ -171,8 +170,10 @@ void run_for_file(const ChosenInputs& chosen, const MapFromFilesOptions& files, 
 void run_for_city(const ChosenInputs& chosen, const MapFromFilesOptions& files, const ReadingReport& listed,
                   const BuildCommandOptions& options, const CommonOptions& common) {
   const auto start = std::chrono::steady_clock::now();
+  CitySurvey survey{options.date, {}};
+  if (options.rays.trajectory) survey.track = track_of(options.rays);
   const CityBuilt built =
-      build_city_of(chosen.inputs, files, options.output.save, options.output.file, options.city, common);
+      build_city_of(chosen.inputs, files, options.output.save, survey, options.output.file, options.city, common);
   const CityLayout& layout = built.manifest.layout;
   warn_of(built.notes, layout.frame.epsg);
   warn_without_labels(options.points.classes.scheme_name, std::ranges::count(layout.channels, "label") > 0);
@@ -213,8 +214,8 @@ ExitCode run(const BuildCommandOptions& options, const CommonOptions& common) {
   const ChosenInputs chosen = chosen_inputs(all, points);
   check_outputs(options, label_files(chosen.inputs));
   if (options.makes_city()) {
-    if (options.rays.are_wanted() || !options.date.empty()) {
-      throw std::invalid_argument("--trajectory, --visibility and --date are for maps in one file");
+    if (options.rays.of_scans) {
+      throw std::invalid_argument("--visibility is for maps in one file: bring a city up to date by vdbmap update");
     }
     run_for_city(chosen, input_options, listed, options, common);
   } else if (options.rays.of_scans) {
@@ -236,6 +237,7 @@ Command build_command() {
       "vdbmap build survey.laz --trajectory mapper.tum --date 2023-03-02 -o map.vdb\n"
       "vdbmap build a.ply b.ply --levels 0.05,0.5 --epsg 25832 --epoch 3 -o map.vdb\n"
       "vdbmap build survey/ -o city/ --epoch 1 --memory 1G\n"
+      "vdbmap build survey/ --trajectory mapper.tum --date 2023-03-02 -o city/ --epoch 1\n"
       "vdbmap build more/ --into city/ --epoch 2",
       add_options, run);
 }

@@ -12,6 +12,7 @@
 #include "vdbmap/core/error.h"
 #include "vdbmap/io/file/atomic_folder.h"
 #include "vdbmap/store/city_base.h"
+#include "vdbmap/store/city_rays.h"
 #include "vdbmap/store/city_writer.h"
 #include "vdbmap/store/source_hash.h"
 #include "vdbmap/store/source_points.h"
@@ -48,6 +49,19 @@ NewSources sort_sources(const std::vector<MapInput>& inputs, const std::vector<M
   return result;
 }
 
+// What rays of the inputs say of the city as the manifest has it, in its tiles.
+void add_rays(CityManifest& manifest, const CityWriter& writer, const std::optional<City>& base,
+              const std::vector<MapInput>& inputs, const std::filesystem::path& folder,
+              const CityBuildOptions& options) {
+  std::filesystem::create_directory(folder);
+  const SaveTile save = [&](const TileId& id, const VoxelMap& tile, const std::optional<Visibility>& seen) {
+    return writer.save_tile(id, tile, manifest.layout.density, seen);
+  };
+  manifest.tiles = add_rays_to_tiles(
+      {writer.folder(), std::nullopt, manifest}, base, [&](const auto& take) { options.rays(inputs, take); },
+      options.memory_bytes, folder, save);
+}
+
 // Counts the new sources and publishes the city with them.
 CityBuilt write_city(CityWriter& writer, const std::optional<City>& base, NewSources counted,
                      const CityBuildOptions& options) {
@@ -65,8 +79,8 @@ CityBuilt write_city(CityWriter& writer, const std::optional<City>& base, NewSou
   const CityLayout added =
       layout_of_points(*points.anchor, points.kinds, points.notes, options.files.build, options.save.density);
   const CityLayout layout = base ? merged_layout(base->manifest.layout, added) : added;
-  const SaveTile save = [&](const TileId& id, const VoxelMap& tile) {
-    return writer.save_tile(id, tile, layout.density);
+  const SaveTile save = [&](const TileId& id, const VoxelMap& tile, const std::optional<Visibility>& seen) {
+    return writer.save_tile(id, tile, layout.density, seen);
   };
   const std::vector<TileId> ids = sums.tiles();
   options.on_tiles_begun(ids.size());
@@ -77,6 +91,8 @@ CityBuilt write_city(CityWriter& writer, const std::optional<City>& base, NewSou
   if (base) kept = keep_tiles(*base, tiles_without(*base, ids), layout, save);
   CityBuilt built{manifest_with(base, std::move(kept), {layout, std::move(renewed), counted.sources}, epoch),
                   std::move(points.notes), std::move(counted.sources), std::move(counted.not_counted)};
+  if (!options.date.empty()) add_epoch(built.manifest.epochs, {epoch, options.date, {}});
+  if (options.rays) add_rays(built.manifest, writer, base, counted.inputs, spilled.temporary_path() / "rays", options);
   writer.publish(built.manifest, options.keep_epochs);
   return built;
 }
