@@ -44,7 +44,7 @@ struct LogRow {
   const CityManifest& manifest;
   std::size_t num_new_tiles = 0;  // whose files no earlier epoch has
   std::size_t num_new_sources = 0;
-  MapEpoch told;  // of the survey or drive: its date, and what it changed, where that is known
+  MapEpoch told = {};  // of the survey or drive: its date, and what it changed, where that is known
 };
 
 LogRow row_of(std::int32_t epoch, const CityManifest& manifest, std::set<std::string>& known_tiles) {

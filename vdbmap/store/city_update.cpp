@@ -332,7 +332,9 @@ UpdatedCity update_city(const std::filesystem::path& city, const std::filesystem
                         const CloudSource& clouds, const std::vector<MapSource>& sources,
                         const CityUpdateOptions& options) {
   options.update.check();
-  open_city(city);  // is no new folder
+  if (open_city(city).epoch && city == output) {
+    throw std::invalid_argument(city.string() + ": is an epoch of a city, only its latest can be brought up to date");
+  }
   std::error_code missing;
   const bool is_in_place = std::filesystem::equivalent(city, output, missing);
   CityWriter writer(output);

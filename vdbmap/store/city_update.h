@@ -46,9 +46,9 @@ struct UpdatedCity {
 /// In `output`, another folder, the city is made as it is afterwards, of that epoch alone, and `city` stays as it is;
 /// where both are the same folder, it changes at once when all is done, and until then is as before, whatever happens.
 ///
-/// Clouds are gone through twice. Throws std::invalid_argument for bad options, an epoch before the city's and sources
-/// that it counted already; std::out_of_range as MapBuilder::add(); IoError where a tile cannot be read, another
-/// process writes, or the disk is full.
+/// Clouds are gone through twice. Throws std::invalid_argument for bad options, an epoch before the city's, sources
+/// that it counted already and an epoch of a city that is past; std::out_of_range as MapBuilder::add(); IoError where a
+/// tile cannot be read, another process writes, or the disk is full.
 UpdatedCity update_city(const std::filesystem::path& city, const std::filesystem::path& output,
                         const CloudSource& clouds, const std::vector<MapSource>& sources,
                         const CityUpdateOptions& options = {});
