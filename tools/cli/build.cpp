@@ -186,6 +186,9 @@ void run_for_city(const ChosenInputs& chosen, const MapFromFilesOptions& files, 
 // Before the work: whether there is one output, which can be written and is no input.
 void check_outputs(const BuildCommandOptions& options, const std::vector<std::filesystem::path>& inputs) {
   if (options.output.file.empty() && !options.city.into) throw std::invalid_argument("--output or --into is required");
+  if (options.makes_city() && options.rays.of_scans) {
+    throw std::invalid_argument("--visibility is for maps in one file: bring a city up to date by vdbmap update");
+  }
   if (options.makes_city()) return;  // its writer checks the folder first of all
   check_output(options.output.file, kMapKind, inputs);
 }
@@ -214,9 +217,6 @@ ExitCode run(const BuildCommandOptions& options, const CommonOptions& common) {
   const ChosenInputs chosen = chosen_inputs(all, points);
   check_outputs(options, label_files(chosen.inputs));
   if (options.makes_city()) {
-    if (options.rays.of_scans) {
-      throw std::invalid_argument("--visibility is for maps in one file: bring a city up to date by vdbmap update");
-    }
     run_for_city(chosen, input_options, listed, options, common);
   } else if (options.rays.of_scans) {
     run_with_rays_of_scans(chosen, all, input_options, listed, options, common);
