@@ -61,7 +61,7 @@ void add_ray_options(CLI::App& app, BuildCommandOptions& options, CLI::Option* p
       ->default_str("0,0,0")
       ->needs(trajectory);
   app.add_flag("--visibility", options.rays.of_scans,
-               "With --poses: deskew scans with times, and keep from their rays what is free")
+               "With --poses, for a map in one file: deskew scans with times, and keep from their rays what is free")
       ->needs(poses);
 }
 
