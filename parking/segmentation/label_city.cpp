@@ -12,6 +12,7 @@
 #include "vdbmap/core/map_tiles.h"
 #include "vdbmap/store/city_window.h"
 #include "vdbmap/store/city_writer.h"
+#include "vdbmap/store/tile_visibility.h"
 
 namespace vdbmap::parking {
 namespace {
@@ -53,6 +54,12 @@ VoxelMap labelled_block(City& city, const TileId& block, std::int32_t side, cons
   return map;
 }
 
+// What rays saw stays as it was.
+CityTile label_tile(const City& city, const CityTile& tile, const VoxelMap& labelled, const CityWriter& writer) {
+  const VoxelMap part = cut_tile(labelled, tile.id);
+  return writer.save_tile(tile.id, part, city.manifest.layout.density, load_tile_visibility(city, tile, part));
+}
+
 }  // namespace
 
 CityManifest label_city(City& city, const std::filesystem::path& folder, const NetworkWeights& network,
@@ -64,9 +71,9 @@ CityManifest label_city(City& city, const std::filesystem::path& folder, const N
   const float density = manifest.layout.density;
   for (const auto& [block, tiles] : blocks_of(city.manifest, options.tiles_at_once)) {
     const VoxelMap map = labelled_block(city, block, options.tiles_at_once, network);
-    manifest.layout = layout_of(map, density);
+    if (map.finest().size() > 0) manifest.layout = layout_of(map, density);
     for (const CityTile& tile : tiles) {
-      manifest.tiles.push_back(writer.save_tile(tile.id, cut_tile(map, tile.id), density));
+      manifest.tiles.push_back(label_tile(city, tile, map, writer));
     }
     options.on_tiles_done(tiles.size());
   }

@@ -15,6 +15,7 @@
 #include "tests/tools/map_command.h"
 #include "vdbmap/core/map_merge.h"
 #include "vdbmap/io/points/point_reader.h"
+#include "vdbmap/io/poses/trajectory_file.h"
 #include "vdbmap/io/vdb/map_file.h"
 #include "vdbmap/store/city_lock.h"
 #include "vdbmap/store/city_window.h"
@@ -286,7 +287,7 @@ TEST_F(CityCommand, DamagedAndNewerManifestsAreRefused) {
   std::string newer = manifest;
   newer.replace(newer.find("\"version\": 1"), 12, "\"version\": 9");
   test::write_raw(path("city/map.json"), newer);
-  expect_error(vdbmap({"query", city(), "--at", "1,1,1"}), ExitCode::kBadInput, "version is 9, newer than the 1");
+  expect_error(vdbmap({"query", city(), "--at", "1,1,1"}), ExitCode::kBadInput, "version is 9, newer than the 2");
 }
 
 TEST_F(CityCommand, ACityThatCannotBeWrittenCanBeRead) {
@@ -403,6 +404,51 @@ TEST_F(CityFault, AReplacedSourceToo) {
   }
   EXPECT_TRUE(test::files_of_city(city) == after);
   EXPECT_GT(num_failures, 3);
+}
+
+// Two scans from the middle of what the city shows.
+class DriveFaultTest : public CityFaultTest {
+ protected:
+  void SetUp() override {
+    build_city_of_a({"--epoch", "1"});
+    std::filesystem::copy(city(), path("kept"), std::filesystem::copy_options::recursive);
+    before_ = test::files_of_city(city());
+    scans(2);
+    Trajectory poses = read_trajectory(path("poses.txt"));
+    for (auto& pose : poses.map_from_scan) pose->translation() = Eigen::Vector3d(60, 32, 3);
+    write_trajectory(path("poses.txt"), poses, TrajectoryFormat::kKitti);
+    const CommandResult updated = vdbmap(update());
+    EXPECT_EQ(updated.exit_code, 0) << updated.err;
+    after_ = test::files_of_city(city());
+  }
+
+  std::vector<std::string> update() const {
+    return {"update",       "--into", city(),    path("scans"), "--poses",   path("poses.txt"),
+            "--pose-frame", "lidar",  "--epoch", "2",           "--threads", "1"};
+  }
+};
+
+using DriveFault = DriveFaultTest;
+
+TEST_F(DriveFault, KilledAtAnyCallTheSameCommandGivesTheSameBytes) {
+  int num_kills = 0;
+  constexpr int kStep = 17;  // all calls would take minutes
+  for (int n = 1; n < 5000; n += kStep) {
+    restore();
+    const CommandResult killed = with_fault("VDBMAP_KILL_AT=" + std::to_string(n), update());
+    if (killed.signal == 0) break;
+    ++num_kills;
+    const std::string manifest = test::read_raw(path("city/map.json"));
+    ASSERT_TRUE(manifest == before_["map.json"] || manifest == after_["map.json"]) << n;
+    const CommandResult again = vdbmap(update());
+    if (manifest == after_["map.json"]) {  // all was done: the scans are counted
+      ASSERT_EQ(again.exit_code, 2) << n << again.err;
+    } else {
+      ASSERT_EQ(again.exit_code, 0) << n << again.err;
+      ASSERT_TRUE(test::files_of_city(city()) == after_) << n;
+    }
+  }
+  EXPECT_GT(num_kills, 5);
 }
 
 TEST_F(CityFault, AFullDiskLeavesTheCityAsItWas) {

@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
+#include <algorithm>
 #include <filesystem>
 #include <fstream>
 #include <map>
@@ -15,11 +16,13 @@
 #include "tests/tools/map_command.h"
 #include "vdbmap/io/poses/trajectory_file.h"
 #include "vdbmap/io/vdb/map_file.h"
+#include "vdbmap/store/city_folder.h"
 
 namespace vdbmap::cli {
 namespace {
 
 using parking::SurfaceClass;
+using test::CommandResult;
 
 constexpr int kUtm32 = 25832;
 
@@ -105,6 +108,38 @@ class OccupancyCommands : public MapCommand {
 };
 
 using States = std::map<std::string, std::string>;
+
+TEST_F(OccupancyCommands, OfACityIsThatOfTheMapAndReadsOnlyTheTilesAroundTheSpaces) {
+  EXPECT_EQ(vdbmap(occupancy("city.geojson")).exit_code, 0);
+  auto expected = nlohmann::json::parse(test::read_raw(path("occupancy.json")));
+  test::LabelledStreet street = first_epoch();
+  street.add_patch({300, 300, 0}, {10, 10}, SurfaceClass::kGround);
+  save_map(path("wide.vdb"), street.map_at(test::kUtm, kUtm32));
+  EXPECT_EQ(vdbmap({"export", path("wide.vdb"), path("labelled/")}).exit_code, 0);
+  const CityManifest manifest = open_city(path("labelled")).manifest;
+  const auto far = std::ranges::max_element(manifest.tiles, {}, &CityTile::id);
+  test::write_raw(tile_path(path("labelled"), *far), "not read");
+  std::vector<std::string> command = occupancy("city.geojson");
+  command[1] = path("labelled/");
+  const CommandResult result = vdbmap(command);
+  EXPECT_EQ(result.exit_code, 0) << result.err;
+  auto found = nlohmann::json::parse(test::read_raw(path("occupancy.json")));
+  EXPECT_EQ(found["spaces"], expected["spaces"]);
+  // The city is a later epoch too: of a map.
+  const auto by_map = [&](const std::string& later) {
+    const CommandResult seen = vdbmap({"occupancy", labelled(), path("city.geojson"), later, "-o", path("later.json")});
+    EXPECT_NE(seen.out.find("3 spaces"), std::string::npos) << seen.out << seen.err;
+    return nlohmann::json::parse(test::read_raw(path("later.json")))["spaces"];
+  };
+  EXPECT_EQ(by_map(path("labelled/")), by_map(labelled()));
+}
+
+TEST_F(OccupancyCommands, SpacesOfACityAreThoseOfTheMap) {
+  EXPECT_EQ(vdbmap({"export", labelled(), path("labelled/")}).exit_code, 0);
+  EXPECT_EQ(vdbmap({"spaces", labelled(), "-o", path("a.geojson")}).exit_code, 0);
+  EXPECT_EQ(vdbmap({"spaces", path("labelled/"), "-o", path("b.geojson")}).exit_code, 0);
+  expect_same_bytes("a.geojson", "b.geojson");
+}
 
 TEST_F(OccupancyCommands, SpacesAreMadeOfVehiclesAndKeepTheirIds) {
   const nlohmann::json made = json_of({"spaces", labelled(), "-o", path("a.geojson"), "--date", "2023-03-01"});

@@ -1,13 +1,18 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
+#include <algorithm>
 #include <cmath>
 #include <fstream>
+#include <numeric>
 #include <string>
 #include <vector>
 
 #include <gtest/gtest.h>
 #include <nlohmann/json.hpp>
+#include <sys/stat.h>
+#include <unistd.h>
 
 #include "tests/support/raw_files.h"
+#include "tests/support/sample_maps.h"
 #include "tests/support/synthetic_scene.h"
 #include "tests/tools/map_command.h"
 #include "vdbmap/io/kitti/kitti_bin.h"
@@ -15,6 +20,8 @@
 #include "vdbmap/io/las/las.h"
 #include "vdbmap/io/points/point_reader.h"
 #include "vdbmap/io/poses/trajectory_file.h"
+#include "vdbmap/store/city_lock.h"
+#include "vdbmap/store/seen_window.h"
 
 namespace vdbmap::cli {
 namespace {
@@ -190,12 +197,156 @@ TEST_F(Update, WrongUseIsSaidInOneLine) {
                "missing.vdb");
 }
 
-TEST_F(Update, CitiesAreRefusedByName) {
-  const std::string before = map_with_box();
-  drive("second", false);
-  EXPECT_EQ(vdbmap({"export", before, path("city/")}).exit_code, 0);
-  expect_error(vdbmap(arguments(path("city/"), "second", "after.vdb")), ExitCode::kWrongUsage, "is a city");
-  expect_error(vdbmap(arguments(before, "second", "city/")), ExitCode::kWrongUsage, "is a city");
+// The map with the box as a city, and what of a second drive without it is known.
+class UpdateCity : public Update {
+ protected:
+  UpdateCity() {
+    drive("second", false);
+    EXPECT_EQ(vdbmap({"export", map_with_box(), city()}).exit_code, 0);
+    manifest_ = test::read_raw(path("city/map.json"));
+  }
+
+  std::string city() const { return path("city/"); }
+
+  std::vector<std::string> into(const std::string& name, const std::vector<std::string>& more = {}) const {
+    std::vector<std::string> arguments = {"update",       "--into", city(),    path(name), "--poses", poses_of(name),
+                                          "--pose-frame", "lidar",  "--epoch", "2",        "--date",  "2023-09-14"};
+    arguments.insert(arguments.end(), more.begin(), more.end());
+    return arguments;
+  }
+
+  // Refused, and the city is what it was.
+  void expect_refused(const std::vector<std::string>& command, ExitCode code, const std::string& part) const {
+    expect_error(vdbmap(command), code, part);
+    EXPECT_EQ(test::read_raw(path("city/map.json")), manifest_);
+    EXPECT_EQ(vdbmap({"check", city()}).exit_code, 0);
+  }
+
+  std::string manifest_;
+};
+
+TEST_F(UpdateCity, IsThatOfTheMapByteForByte) {
+  std::vector<std::string> command = arguments(path("before.vdb"), "second", "after.vdb");
+  command.insert(command.end(), {"--epoch", "2", "--date", "2023-09-14"});
+  const json expected = json_of(command);
+  const json report = json_of(into("second", {"--memory", "1M"}));
+  EXPECT_EQ(report["voxels"], expected["voxels"]);
+  EXPECT_GT(report["tiles"], 1);
+  EXPECT_EQ(vdbmap({"export", city(), path("exported.vdb")}).exit_code, 0);
+  expect_same_bytes("exported.vdb", "after.vdb");
+  EXPECT_EQ(vdbmap({"export", path("city@1"), path("exported_before.vdb")}).exit_code, 0);
+  expect_same_bytes("exported_before.vdb", "before.vdb");
+  EXPECT_EQ(vdbmap({"check", city()}).exit_code, 0);
+}
+
+TEST_F(UpdateCity, TellsItsEpochsAndItsRays) {
+  EXPECT_EQ(json_of({"info", city()})["visibility"], true);
+  const json report = json_of(into("second"));
+  const json log = json_of({"log", city()});
+  ASSERT_EQ(log.size(), 2U);
+  EXPECT_EQ(log[0]["date"], "2023-03-02");
+  EXPECT_EQ(log[1]["date"], "2023-09-14");
+  EXPECT_EQ(log[1]["changes"]["gone"], report["voxels"]["gone"]);
+  EXPECT_EQ(log[1]["new_sources"].size(), 6U);
+  const CommandResult text = vdbmap({"log", city()});
+  EXPECT_NE(text.out.find("epoch 2 (2023-09-14)"), std::string::npos) << text.out;
+  EXPECT_NE(vdbmap({"info", city()}).out.find("rays       kept in"), std::string::npos);
+}
+
+TEST_F(UpdateCity, DiffOfItsEpochsIsThatOfTheMaps) {
+  EXPECT_EQ(vdbmap(arguments(path("before.vdb"), "second", "after.vdb")).exit_code, 0);
+  EXPECT_EQ(vdbmap(into("second")).exit_code, 0);
+  const json expected = json_of({"diff", path("before.vdb"), path("after.vdb")});
+  EXPECT_GT(expected["voxels"]["vanished"], 20);
+  const json found = json_of({"diff", path("city@1"), path("city@2")});
+  EXPECT_EQ(found["voxels"], expected["voxels"]);
+  EXPECT_EQ(found["regions"], expected["regions"]);
+}
+
+TEST_F(UpdateCity, KeepsWhatRaysSawWhenItIsSegmented) {
+  EXPECT_EQ(vdbmap(into("second")).exit_code, 0);
+  EXPECT_EQ(vdbmap({"segment", city(), "-o", path("labelled/")}).exit_code, 0);
+  const LoadedMap plain = load_seen_map_or_city(city());
+  const LoadedMap labelled = load_seen_map_or_city(path("labelled/"));
+  EXPECT_EQ(labelled.map.finest().channels().labels.size(), plain.map.finest().size());
+  ASSERT_TRUE(labelled.visibility);
+  EXPECT_TRUE(labelled.visibility->hits == plain.visibility->hits);
+  EXPECT_TRUE(labelled.visibility->passes == plain.visibility->passes);
+  EXPECT_EQ(labelled.visibility->seen_empty.num_voxels(), plain.visibility->seen_empty.num_voxels());
+  EXPECT_EQ(vdbmap({"check", path("labelled/")}).exit_code, 0);
+}
+
+TEST_F(UpdateCity, TheSameScansAreNotCountedTwice) {
+  EXPECT_EQ(vdbmap(into("second")).exit_code, 0);
+  const std::string manifest = test::read_raw(path("city/map.json"));
+  expect_error(vdbmap(into("second")), ExitCode::kWrongUsage, "were counted in " + city() + " before");
+  EXPECT_EQ(test::read_raw(path("city/map.json")), manifest);
+}
+
+TEST_F(UpdateCity, GoesToAnotherFolder) {
+  std::vector<std::string> command = arguments(city(), "second", "other/");
+  EXPECT_EQ(vdbmap(command).exit_code, 0);
+  EXPECT_EQ(test::read_raw(path("city/map.json")), manifest_);
+  EXPECT_EQ(vdbmap({"check", path("other/")}).exit_code, 0);
+  expect_error(vdbmap(command), ExitCode::kBadInput, "holds a city already");
+}
+
+TEST_F(UpdateCity, WrongUseChangesNothing) {
+  expect_refused(arguments(city(), "second", "after.vdb"), ExitCode::kWrongUsage, "is a city, write what comes of it");
+  expect_refused(arguments(path("before.vdb"), "second", "other/"), ExitCode::kWrongUsage, "is no city");
+  expect_refused(arguments(city(), "second", "city"), ExitCode::kWrongUsage, "use --into");
+  expect_refused({"update", path("before.vdb"), "--poses", poses_of("second"), "-o", path("after.vdb")},
+                 ExitCode::kWrongUsage, "SCANS is required");
+  expect_refused({"update", city(), path("second"), "--poses", poses_of("second")}, ExitCode::kWrongUsage,
+                 "--output or --into is required");
+  std::vector<std::string> early = into("second");
+  early[std::distance(early.begin(), std::ranges::find(early, "2"))] = "0";
+  expect_refused(early, ExitCode::kWrongUsage, "is in epoch 1 already");
+  std::vector<std::string> past = into("second");
+  past[2] = path("city@1");
+  expect_refused(past, ExitCode::kWrongUsage, "is an epoch of a city");
+  std::vector<std::string> missing = into("second");
+  missing[2] = path("none/");
+  expect_refused(missing, ExitCode::kInputOutputFailed, "none");
+}
+
+TEST_F(UpdateCity, PosesThatCannotBeChangeNothing) {
+  const Trajectory good = read_trajectory(poses_of("second"));
+  Trajectory poses = good;
+  for (auto& pose : poses.map_from_scan) pose->translation().x() += 5000;
+  write_trajectory(poses_of("second"), poses, TrajectoryFormat::kKitti);
+  expect_refused(into("second"), ExitCode::kBadInput, "do not meet the map " + city());
+  poses = good;
+  poses.map_from_scan.pop_back();
+  write_trajectory(poses_of("second"), poses, TrajectoryFormat::kKitti);
+  expect_refused(into("second"), ExitCode::kBadInput, "5 poses for 6 scans");
+  std::filesystem::remove(poses_of("second"));
+  expect_refused(into("second"), ExitCode::kInputOutputFailed, "second_poses.txt");
+  poses = good;
+  poses.map_from_scan[2].reset();
+  write_trajectory(poses_of("second"), poses, TrajectoryFormat::kKitti);
+  const CommandResult result = vdbmap(into("second"));
+  EXPECT_EQ(result.exit_code, 0) << result.err;
+  EXPECT_NE(result.err.find("1 of 6 scans have no pose"), std::string::npos) << result.err;
+}
+
+TEST_F(UpdateCity, AnotherWriterAndADamagedTileAreNamed) {
+  {
+    const CityLock lock(path("city"));
+    expect_refused(into("second"), ExitCode::kInputOutputFailed, "city");
+  }
+  for (const auto& tile : std::filesystem::directory_iterator(path("city/tiles"))) {
+    test::write_raw(tile.path(), "damaged");
+  }
+  expect_error(vdbmap(into("second")), ExitCode::kBadInput, "city/tiles/");
+  EXPECT_EQ(test::read_raw(path("city/map.json")), manifest_);
+}
+
+TEST_F(UpdateCity, OneThatCannotBeWrittenStaysAsItIs) {
+  if (::geteuid() == 0) GTEST_SKIP() << "root may write everywhere";
+  ::chmod(path("city").c_str(), 0555);
+  expect_refused(into("second"), ExitCode::kInputOutputFailed, "cannot");
+  ::chmod(path("city").c_str(), 0755);
 }
 
 TEST_F(Update, ChangesOfAnEpochThatGoesOnAddUp) {
@@ -230,6 +381,29 @@ class SurveyRaysCommand : public MapCommand {
     return path("survey.las");
   }
 
+  // A wall along x on both sides of the border of two tiles, `farther` [m] behind that of the first survey.
+  std::string wide_survey(const std::string& name, double farther) const {
+    PointCloud cloud;
+    for (int i = 0; i < 12'000; ++i) {
+      cloud.positions.emplace_back(0.05 * (i % 400) - 10, 5 + farther + 0.001 * (i % 7), 0.03 * (i / 400 % 100) + 0.01);
+      cloud.times.push_back(100 + 0.0003 * i);
+    }
+    write_las(path(name), cloud);
+    return path(name);
+  }
+
+  std::string wide_trajectory() const {
+    Trajectory poses;
+    for (int i = 0; i < 5; ++i) {
+      Eigen::Isometry3d pose = Eigen::Isometry3d::Identity();
+      pose.translation() = Eigen::Vector3d(5.0 * i - 10, 0, 1);
+      poses.map_from_scan.emplace_back(pose);
+      poses.times.push_back(100 + i);
+    }
+    write_trajectory(path("wide.tum"), poses, TrajectoryFormat::kTum);
+    return path("wide.tum");
+  }
+
   std::string trajectory() const {
     Trajectory poses;
     for (int i = 0; i < 5; ++i) {
@@ -253,11 +427,79 @@ TEST_F(SurveyRaysCommand, KeepWhatIsFree) {
   EXPECT_NE(vdbmap({"info", path("b.vdb")}).out.find("was never seen"), std::string::npos);
 }
 
+// What two maps, files or cities, know of rays.
+void expect_same_rays(const LoadedMap& a, const LoadedMap& b) {
+  EXPECT_EQ(test::difference(a.map, b.map), "");
+  ASSERT_TRUE(a.visibility && b.visibility);
+  EXPECT_TRUE(a.visibility->hits == b.visibility->hits);
+  EXPECT_TRUE(a.visibility->passes == b.visibility->passes);
+  ASSERT_EQ(a.visibility->seen_empty.leaves().size(), b.visibility->seen_empty.leaves().size());
+  for (std::size_t i = 0; i < a.visibility->seen_empty.leaves().size(); ++i) {
+    const VoxelLeaf& leaf = a.visibility->seen_empty.leaves()[i];
+    const VoxelLeaf* other = b.visibility->seen_empty.find_leaf(leaf.origin());
+    ASSERT_TRUE(other && other->getValueMask() == leaf.getValueMask()) << leaf.origin();
+  }
+}
+
+TEST_F(SurveyRaysCommand, OfACityAreThoseOfTheMapForAnyMemory) {
+  const std::string wide = wide_survey("wide.las", 0);
+  const std::vector<std::string> rays = {"--trajectory", wide_trajectory(), "--date", "2023-03-02", "--epoch", "1"};
+  std::vector<std::string> one = {"build", wide, "-o", path("one.vdb")};
+  one.insert(one.end(), rays.begin(), rays.end());
+  EXPECT_EQ(vdbmap(one).exit_code, 0);
+  for (const char* memory : {"1M", "2G"}) {
+    const std::string city = path(std::string("city") + memory) + "/";
+    std::vector<std::string> command = {"build", wide, "-o", city, "--memory", memory};
+    command.insert(command.end(), rays.begin(), rays.end());
+    EXPECT_EQ(vdbmap(command).exit_code, 0);
+    expect_same_rays(load_seen_map_or_city(city), load_seen_map_or_city(path("one.vdb")));
+    EXPECT_EQ(json_of({"info", city})["visibility"], true);
+    EXPECT_EQ(json_of({"log", city})[0]["date"], "2023-03-02");
+    EXPECT_EQ(vdbmap({"check", city}).exit_code, 0);
+  }
+}
+
+TEST_F(SurveyRaysCommand, AddToThoseOfTheCity) {
+  const std::string city = path("city/");
+  const std::string way = wide_trajectory();
+  EXPECT_EQ(vdbmap({"build", wide_survey("a.las", 0), "--trajectory", way, "-o", city}).exit_code, 0);
+  const LoadedMap before = load_seen_map_or_city(city);
+  EXPECT_EQ(vdbmap({"build", wide_survey("b.las", 2), "--trajectory", way, "--into", city}).exit_code, 0);
+  const LoadedMap after = load_seen_map_or_city(city);
+  const VoxelLevel& level = after.map.finest();
+  for (std::size_t i = 0; i < level.size(); ++i) ASSERT_EQ(after.visibility->hits[i], level.records()[i].count);
+  // What was seen empty is still, or now occupied; the wall of the second survey hides nothing that was seen.
+  const SightFinder sight(level, *after.visibility);
+  for (const VoxelLeaf& leaf : before.visibility->seen_empty.leaves()) {
+    for (auto it = leaf.getValueMask().beginOn(); it; ++it) {
+      ASSERT_NE(sight.find(leaf.offsetToGlobalCoord(it.pos())), Sight::kNeverSeen);
+    }
+  }
+  EXPECT_GT(after.visibility->seen_empty.num_voxels(), before.visibility->seen_empty.num_voxels());
+  // The second survey's rays went through the first one's wall, which is nearer.
+  std::uint64_t num_passes = 0;
+  for (const std::uint32_t passes : after.visibility->passes) num_passes += passes;
+  EXPECT_GT(num_passes, 100U);
+  // Points without rays leave what is known of others.
+  EXPECT_EQ(vdbmap({"build", survey(false, 0), "--into", city}).exit_code, 0);
+  const LoadedMap last = load_seen_map_or_city(city);
+  EXPECT_EQ(std::accumulate(last.visibility->passes.begin(), last.visibility->passes.end(), std::uint64_t{0}),
+            num_passes);
+  EXPECT_EQ(vdbmap({"check", city}).exit_code, 0);
+}
+
+TEST_F(SurveyRaysCommand, OfScansAreForMapsInOneFile) {
+  write_trajectory(path("poses.txt"), read_trajectory(trajectory()), TrajectoryFormat::kKitti);
+  expect_error(vdbmap({"build", survey(false, 0), "--poses", path("poses.txt"), "--visibility", "-o", path("city/")}),
+               ExitCode::kWrongUsage, "--visibility is for maps in one file");
+}
+
 TEST_F(SurveyRaysCommand, ADateNeedsNone) {
   EXPECT_EQ(vdbmap({"build", survey(false, 0), "--date", "2023-03-02", "-o", path("a.vdb")}).exit_code, 0);
   EXPECT_EQ(json_of({"log", path("a.vdb")})[0]["date"], "2023-03-02");
-  expect_error(vdbmap({"build", survey(false, 0), "--date", "2023-03-02", "-o", path("city/")}), ExitCode::kWrongUsage,
-               "--date");
+  EXPECT_EQ(vdbmap({"build", survey(false, 0), "--date", "2023-03-02", "-o", path("city/")}).exit_code, 0);
+  EXPECT_EQ(json_of({"log", path("city/")})[0]["date"], "2023-03-02");
+  EXPECT_EQ(json_of({"info", path("city/")})["visibility"], false);
 }
 
 TEST_F(SurveyRaysCommand, NeedTimesOfTheTrajectory) {

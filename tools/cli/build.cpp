@@ -37,8 +37,6 @@ struct RayOptions {
   std::optional<std::filesystem::path> trajectory;
   std::vector<double> lever_arm;
   bool of_scans = false;  // whose poses are given
-
-  bool are_wanted() const { return trajectory || of_scans; }
 };
 
 struct BuildCommandOptions {
@@ -64,7 +62,7 @@ void add_ray_options(CLI::App& app, BuildCommandOptions& options, CLI::Option* p
       ->default_str("0,0,0")
       ->needs(trajectory);
   app.add_flag("--visibility", options.rays.of_scans,
-               "With --poses: deskew scans with times, and keep from their rays what is free")
+               "With --poses, for a map in one file: deskew scans with times, and keep from their rays what is free")
       ->needs(poses);
 }
 
@@ -97,21 +95,22 @@ double seconds_since(std::chrono::steady_clock::time_point start) {
   return std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
 }
 
+SurveyTrack track_of(const RayOptions& rays) {
+  const Eigen::Vector3d lever_arm =
+      rays.lever_arm.empty() ? Eigen::Vector3d(Eigen::Vector3d::Zero()) : Eigen::Vector3d(rays.lever_arm.data());
+  return read_survey_track(*rays.trajectory, lever_arm);
+}
+
 // The places of the scans in their sequence, rays and all.
 MapExtras extras_of_survey(const VoxelMap& map, const ChosenInputs& chosen, const InputOptions& inputs,
                            const RayOptions& rays, const CommonOptions& common) {
-  const Eigen::Vector3d lever_arm =
-      rays.lever_arm.empty() ? Eigen::Vector3d(Eigen::Vector3d::Zero()) : Eigen::Vector3d(rays.lever_arm.data());
   Progress progress("following rays", chosen.inputs.size(), common);
   InputOptions options = inputs;
   options.on_scan_done = [&progress] { progress.advance(); };
-  SurveyRays survey(chosen.inputs, options, read_survey_track(*rays.trajectory, lever_arm));
+  SurveyRays survey(chosen.inputs, options, track_of(rays));
   MapExtras extras;
   extras.visibility = find_visibility(map, [&](const auto& take) { survey.for_each(take); });
-  if (survey.num_without_ray() > 0) {
-    spdlog::warn("{}: {} of {} points are of times without a pose and have no ray", rays.trajectory->string(),
-                 survey.num_without_ray(), survey.num_points());
-  }
+  survey.warn();
   return extras;
 }
 
@@ -177,8 +176,10 @@ void run_for_city(const ChosenInputs& chosen, const MapFromFilesOptions& files, 
   for (const std::string& text : options.city.replaced) {
     replaced.push_back(parse_replacement(text, options.points.read));
   }
-  const CityBuilt built =
-      build_city_of(chosen.inputs, replaced, files, options.output.save, options.output.file, options.city, common);
+  CitySurvey survey{options.date, {}};
+  if (options.rays.trajectory) survey.track = track_of(options.rays);
+  const CityBuilt built = build_city_of(chosen.inputs, replaced, files, options.output.save, survey,
+                                        options.output.file, options.city, common);
   const CityLayout& layout = built.manifest.layout;
   warn_of(built.notes, layout.frame.epsg);
   warn_without_labels(options.points.classes.scheme_name, std::ranges::count(layout.channels, "label") > 0);
@@ -193,6 +194,9 @@ void check_outputs(const BuildCommandOptions& options, const std::vector<std::fi
   if (options.output.file.empty() && !options.city.into) throw std::invalid_argument("--output or --into is required");
   if (options.city.keeps_parts && !options.makes_city()) {
     throw std::invalid_argument("--keep-parts is for a city: -o FOLDER/");
+  }
+  if (options.makes_city() && options.rays.of_scans) {
+    throw std::invalid_argument("--visibility is for maps in one file: bring a city up to date by vdbmap update");
   }
   if (options.makes_city()) return;  // its writer checks the folder first of all
   check_output(options.output.file, kMapKind, inputs);
@@ -227,9 +231,6 @@ ExitCode run(const BuildCommandOptions& options, const CommonOptions& common) {
   }
   check_outputs(options, label_files(chosen.inputs));
   if (options.makes_city()) {
-    if (options.rays.are_wanted() || !options.date.empty()) {
-      throw std::invalid_argument("--trajectory, --visibility and --date are for maps in one file");
-    }
     run_for_city(chosen, input_options, listed, options, common);
   } else if (options.rays.of_scans) {
     run_with_rays_of_scans(chosen, all, input_options, listed, options, common);
@@ -250,6 +251,7 @@ Command build_command() {
       "vdbmap build survey.laz --trajectory mapper.tum --date 2023-03-02 -o map.vdb\n"
       "vdbmap build a.ply b.ply --levels 0.05,0.5 --epsg 25832 --epoch 3 -o map.vdb\n"
       "vdbmap build survey/ -o city/ --epoch 1 --memory 1G\n"
+      "vdbmap build survey/ --trajectory mapper.tum --date 2023-03-02 -o city/ --epoch 1\n"
       "vdbmap build more/ --into city/ --epoch 2\n"
       "vdbmap build survey/ -o city/ --keep-parts\n"
       "vdbmap build --into city/ --replace a.laz=corrected/a.laz --remove b.laz",

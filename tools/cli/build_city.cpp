@@ -9,6 +9,7 @@
 #include <spdlog/spdlog.h>
 
 #include "tools/cli/progress.h"
+#include "vdbmap/store/source_points.h"
 
 namespace vdbmap::cli {
 namespace {
@@ -23,8 +24,8 @@ std::size_t count_distinct_files(const std::vector<MapInput>& inputs, const std:
 }  // namespace
 
 CityBuilt build_city_of(const std::vector<MapInput>& inputs, const std::vector<SourceReplacement>& replaced,
-                        const MapFromFilesOptions& files, const SaveOptions& save, const std::filesystem::path& output,
-                        const CityOutput& city, const CommonOptions& common) {
+                        const MapFromFilesOptions& files, const SaveOptions& save, const CitySurvey& survey,
+                        const std::filesystem::path& output, const CityOutput& city, const CommonOptions& common) {
   std::optional<Progress> progress;
   progress.emplace("identifying files", count_distinct_files(inputs, replaced), common);
   CityBuildOptions options;
@@ -35,11 +36,22 @@ CityBuilt build_city_of(const std::vector<MapInput>& inputs, const std::vector<S
   options.removed = city.removed;
   options.replaced = replaced;
   if (city.keep_epochs) options.keep_epochs = *city.keep_epochs;
+  options.date = survey.date;
   options.on_file_hashed = [&] { progress->advance(); };
   options.on_reading_begun = [&](std::size_t count) { progress.emplace("building from scans", count, common); };
   options.files.inputs.on_scan_done = [&] { progress->advance(); };
   options.on_tiles_begun = [&](std::size_t count) { progress.emplace("finishing tiles", count, common); };
   options.on_tile_done = [&] { progress->advance(); };
+  if (survey.track) {
+    options.rays = [&](const std::vector<MapInput>& counted, const std::function<void(const PosedCloud&)>& take) {
+      progress.emplace("following rays", counted.size(), common);
+      InputOptions in_pieces = options.files.inputs;
+      in_pieces.most_points = points_at_once(options.memory_bytes);
+      SurveyRays rays(counted, in_pieces, *survey.track);
+      rays.for_each(take);
+      rays.warn();
+    };
+  }
   return city.into ? add_to_city(city_folder(*city.into), inputs, options)
                    : build_city(city_folder(output), inputs, options);
 }

@@ -1,12 +1,15 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "tools/cli/city_summary.h"
 
+#include <algorithm>
 #include <cstdint>
 #include <optional>
 #include <vector>
 
 #include <nlohmann/json.hpp>
 #include <spdlog/fmt/fmt.h>
+
+#include "vdbmap/io/file/text.h"
 
 namespace vdbmap::cli {
 namespace {
@@ -24,6 +27,17 @@ std::vector<std::string> attributes_of_city(const CityLayout& layout) {
   if (layout.has_color) names.emplace_back("color");
   names.insert(names.end(), layout.channels.begin(), layout.channels.end());
   return names;
+}
+
+// The date of the epoch that the city is in.
+std::string date_of(const CityManifest& manifest) {
+  const auto epoch = std::ranges::find(manifest.epochs, manifest.epoch, &MapEpoch::number);
+  return epoch == manifest.epochs.end() ? "" : epoch->date;
+}
+
+std::string date_text(const CityManifest& manifest) {
+  const std::string date = date_of(manifest);
+  return date.empty() ? "" : ", " + printable(date);
 }
 
 std::uint64_t num_bytes(const CityManifest& manifest) {
@@ -58,7 +72,11 @@ std::string text_of_city(const CityManifest& manifest) {
   text += fact("EPSG", layout.frame.epsg ? std::to_string(*layout.frame.epsg) : "unknown");
   text += fact("attributes", fmt::format("{}", fmt::join(attributes_of_city(layout), ", ")));
   text += fact("colours", layout.has_color ? "yes" : "no");
-  text += fact("epoch", std::to_string(manifest.epoch));
+  const auto num_seen = static_cast<std::size_t>(std::ranges::count(manifest.tiles, true, &CityTile::has_rays));
+  text += fact("rays", num_seen == 0 ? "none: what is not occupied was never seen"
+                                     : fmt::format("kept in {} of {} tiles: what is free is known there", num_seen,
+                                                   manifest.tiles.size()));
+  text += fact("epoch", std::to_string(manifest.epoch) + date_text(manifest));
   text += fact("sources", std::to_string(manifest.sources.size()));
   if (keeps_parts(manifest)) text += fact("parts", text_of_parts(manifest));
   return text + fact("size", fmt::format("{} tiles, {:.1f} MB", manifest.tiles.size(),
@@ -86,6 +104,8 @@ nlohmann::ordered_json json_of_city(const CityManifest& manifest, const std::fil
           {"epsg", layout.frame.epsg ? nlohmann::ordered_json(*layout.frame.epsg) : nlohmann::ordered_json(nullptr)},
           {"attributes", attributes_of_city(layout)},
           {"has_color", layout.has_color},
+          {"visibility", has_rays(manifest)},
+          {"date", date_of(manifest).empty() ? nlohmann::ordered_json() : nlohmann::ordered_json(date_of(manifest))},
           {"bytes", num_bytes(manifest)},
           {"keeps_parts", keeps_parts(manifest)},
           {"part_bytes", num_part_bytes(manifest)}};

@@ -21,6 +21,7 @@
 #include "vdbmap/io/vdb/map_file.h"
 #include "vdbmap/store/city_of_map.h"
 #include "vdbmap/store/city_window.h"
+#include "vdbmap/store/seen_window.h"
 
 namespace vdbmap::cli {
 namespace {
@@ -106,22 +107,26 @@ void export_as_points(const ExportCommandOptions& options, const CommonOptions& 
   }
 }
 
+MapHistory history_of(const CityManifest& manifest) { return {manifest.epochs, manifest.sources}; }
+
 // From a folder to a file, from a file to a folder.
 void export_whole_map(const ExportCommandOptions& options, const CommonOptions& common) {
   check_whole_map_options(options);
   if (is_city_output(*options.points)) {
-    const VoxelMap map = load_map_or_city(options.map);
-    const std::vector<MapSource> sources =
-        is_city(options.map) ? open_city(options.map).manifest.sources : std::vector<MapSource>();
-    save_city(city_folder(*options.points), map, {}, sources);
-    return print(*options.points, map.finest().size(), common);
+    const LoadedMap loaded = load_seen_map_or_city(options.map);
+    const MapHistory history =
+        is_city(options.map) ? history_of(open_city(options.map).manifest) : load_history(options.map);
+    save_city(city_folder(*options.points), loaded.map, {loaded.visibility, history});
+    return print(*options.points, loaded.map.finest().size(), common);
   }
   check_output(*options.points, kMapKind, {options.map});
   if (!is_city(options.map)) throw std::invalid_argument(options.points->string() + ": the map is such a file already");
   City city = open_city(options.map);
-  const VoxelMap map = load_city(city);
-  save_map(*options.points, map, {city.manifest.layout.density});
-  print(*options.points, map.finest().size(), common);
+  const LoadedMap loaded = load_seen_window(city, [](const CityTile&) { return true; });
+  // Of a city of which only its sources are known, a map in one file says nothing.
+  const MapHistory history = city.manifest.epochs.empty() ? MapHistory() : history_of(city.manifest);
+  save_map(*options.points, loaded.map, {loaded.visibility, history}, {city.manifest.layout.density});
+  print(*options.points, loaded.map.finest().size(), common);
 }
 
 void export_as_channels(const ExportCommandOptions& options, const CommonOptions& common) {

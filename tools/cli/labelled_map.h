@@ -2,11 +2,13 @@
 #pragma once
 
 #include <filesystem>
+#include <functional>
 #include <optional>
 #include <string>
 
-#include "vdbmap/core/visibility.h"
 #include "vdbmap/core/voxel_map.h"
+#include "vdbmap/store/city_window.h"
+#include "vdbmap/store/seen_window.h"
 
 namespace vdbmap::cli {
 
@@ -14,10 +16,12 @@ namespace vdbmap::cli {
 /// (malformed) where it has none.
 VoxelMap load_labelled_map(const std::filesystem::path& path);
 
-/// What rays said of a map, where its file says so; nothing of a city.
-std::optional<Visibility> visibility_of(const std::filesystem::path& path, const VoxelMap& map);
+/// The same with what rays saw, where that is known; of a city the tiles that `is_wanted`, which is told the frame of
+/// the map, chooses.
+LoadedMap load_seen_labelled_map(const std::filesystem::path& path,
+                                 const std::function<TileChoice(const MapFrame& frame)>& is_wanted);
 
-/// The date of the latest epoch of a map, where its file says so; else empty.
+/// The date of the latest epoch of a map, or of the epoch of a city, where it is known; else empty.
 std::string date_of_map(const std::filesystem::path& path);
 
 }  // namespace vdbmap::cli

@@ -28,16 +28,29 @@ void add_options(CLI::App& app, LogOptions& options) {
       ->required();
 }
 
+std::string text_of(const MapChanges& changes) {
+  return fmt::format("  added {}, gone {}, replaced {}, confirmed {}, unseen {} voxels; {} left out that moved\n",
+                     changes.added, changes.gone, changes.replaced, changes.confirmed, changes.unseen, changes.moved);
+}
+
+nlohmann::ordered_json json_of(const MapChanges& changes) {
+  return {{"added", changes.added},         {"gone", changes.gone},     {"replaced", changes.replaced},
+          {"confirmed", changes.confirmed}, {"unseen", changes.unseen}, {"moved", changes.moved}};
+}
+
 // A city in one epoch.
 struct LogRow {
   std::int32_t epoch;
   const CityManifest& manifest;
   std::size_t num_new_tiles = 0;  // whose files no earlier epoch has
   std::size_t num_new_sources = 0;
+  MapEpoch told = {};  // of the survey or drive: its date, and what it changed, where that is known
 };
 
 LogRow row_of(std::int32_t epoch, const CityManifest& manifest, std::set<std::string>& known_tiles) {
   LogRow row{epoch, manifest};
+  const auto told = std::ranges::find(manifest.epochs, epoch, &MapEpoch::number);
+  if (told != manifest.epochs.end()) row.told = *told;
   for (const CityTile& tile : manifest.tiles) {
     row.num_new_tiles += known_tiles.insert(tile_name(tile.id) + tile.hash).second ? 1 : 0;
   }
@@ -46,9 +59,13 @@ LogRow row_of(std::int32_t epoch, const CityManifest& manifest, std::set<std::st
 }
 
 std::string text_of(const LogRow& row) {
-  std::string text = fmt::format("epoch {}: {} points, {} voxels in {} tiles ({} of them new), {} sources\n", row.epoch,
+  std::string text = fmt::format("epoch {}{}: {} points, {} voxels in {} tiles ({} of them new), {} sources\n",
+                                 row.epoch, row.told.date.empty() ? "" : " (" + printable(row.told.date) + ")",
                                  num_points(row.manifest), num_voxels(row.manifest).front(), row.manifest.tiles.size(),
                                  row.num_new_tiles, row.manifest.sources.size());
+  if (row.told.changes != MapChanges()) {
+    return text + text_of(row.told.changes) + fmt::format("  from {} scans\n", row.num_new_sources);
+  }
   for (const MapSource& source : row.manifest.sources) {
     if (source.epoch != row.epoch) continue;
     text += fmt::format("  {}: {} points\n", printable(source.name), source.num_points);
@@ -63,22 +80,14 @@ nlohmann::ordered_json json_of(const LogRow& row) {
     sources.push_back({{"name", source.name}, {"hash", source.hash}, {"points", source.num_points}});
   }
   return {{"epoch", row.epoch},
+          {"date", row.told.date.empty() ? nlohmann::ordered_json() : nlohmann::ordered_json(row.told.date)},
+          {"changes", json_of(row.told.changes)},
           {"points", num_points(row.manifest)},
           {"voxels", num_voxels(row.manifest)},
           {"tiles", row.manifest.tiles.size()},
           {"new_tiles", row.num_new_tiles},
           {"sources", row.manifest.sources.size()},
           {"new_sources", sources}};
-}
-
-std::string text_of(const MapChanges& changes) {
-  return fmt::format("  added {}, gone {}, replaced {}, confirmed {}, unseen {} voxels; {} left out that moved\n",
-                     changes.added, changes.gone, changes.replaced, changes.confirmed, changes.unseen, changes.moved);
-}
-
-nlohmann::ordered_json json_of(const MapChanges& changes) {
-  return {{"added", changes.added},         {"gone", changes.gone},     {"replaced", changes.replaced},
-          {"confirmed", changes.confirmed}, {"unseen", changes.unseen}, {"moved", changes.moved}};
 }
 
 std::string text_of(const MapHistory& history, const MapEpoch& epoch) {

@@ -96,6 +96,24 @@ bool is_map(const std::filesystem::path& path) {
          (!std::filesystem::is_directory(path, error) || std::filesystem::exists(manifest_path(path), error));
 }
 
+// The tiles of a city that decide about the spaces: as far around them as the network looks, and whole vehicles.
+TileChoice tiles_near(const std::vector<parking::ParkingSpace>& spaces, const MapFrame& frame) {
+  constexpr double kAround = 40;  // [m]
+  std::vector<TileChoice> choices;
+  for (const parking::ParkingSpace& space : spaces) {
+    Extent box = kNoExtent;
+    for (const Eigen::Vector2d& corner : space.outline) {
+      const Eigen::Vector3d place = frame.anchor + Eigen::Vector3d(corner.x(), corner.y(), 0);
+      box.min = box.min.cwiseMin(place - Eigen::Vector3d::Constant(kAround));
+      box.max = box.max.cwiseMax(place + Eigen::Vector3d::Constant(kAround));
+    }
+    choices.push_back(tiles_in_box(box));
+  }
+  return [choices](const CityTile& tile) {
+    return std::ranges::any_of(choices, [&](const TileChoice& is_near) { return is_near(tile); });
+  };
+}
+
 // What the later epoch says.
 struct LaterEpoch {
   parking::EpochEvidence evidence;
@@ -143,12 +161,13 @@ LaterEpoch look_at_map(const OccupancyCommandOptions& options, const VoxelMap& m
   if (options.poses) throw std::invalid_argument("a map of a later epoch has no use for --poses");
   const std::filesystem::path& path = options.later.front();
   LaterEpoch later;
-  later.map = load_labelled_map(path);
+  LoadedMap loaded = load_seen_labelled_map(path, [&](const MapFrame& frame) { return tiles_near(spaces, frame); });
+  later.map = std::move(loaded.map);
   if (!(later.map.frame == map.frame)) {
     throw IoError::malformed(path, "has another anchor or EPSG code than " + options.map.string());
   }
   later.date = date_of_map(path);
-  const std::optional<Visibility> visibility = visibility_of(path, later.map);
+  const std::optional<Visibility>& visibility = loaded.visibility;
   if (!visibility) {
     spdlog::warn("{}: does not say what rays passed: no space is known to be vacant by it", path.string());
   }
@@ -157,12 +176,11 @@ LaterEpoch look_at_map(const OccupancyCommandOptions& options, const VoxelMap& m
 }
 
 // States in the epoch before: what the file of the spaces says, else what stands in the map they were found in.
-std::vector<std::optional<parking::SpaceState>> previous_states(const OccupancyCommandOptions& options,
-                                                                const VoxelMap& map,
+std::vector<std::optional<parking::SpaceState>> previous_states(const LoadedMap& loaded,
                                                                 const std::vector<parking::ParkingSpace>& spaces,
                                                                 const parking::GroundPlan& ground) {
-  const parking::EpochEvidence evidence =
-      parking::evidence_of_level(spaces, ground, map.finest(), map.finest(), visibility_of(options.map, map));
+  const VoxelLevel& level = loaded.map.finest();
+  const parking::EpochEvidence evidence = parking::evidence_of_level(spaces, ground, level, level, loaded.visibility);
   std::vector<std::optional<parking::SpaceState>> states;
   for (std::size_t i = 0; i < spaces.size(); ++i) {
     states.push_back(spaces[i].history.empty() ? parking::judge(evidence.spaces[i]).state
@@ -204,21 +222,25 @@ ExitCode run(const OccupancyCommandOptions& options, const CommonOptions& common
   if (options.poses) inputs.push_back(*options.poses);
   check_outputs(options.outputs, inputs);
 
-  const VoxelMap map = load_labelled_map(options.map);
   parking::OccupancyRecord record;
+  const LoadedMap loaded = load_seen_labelled_map(options.map, [&](const MapFrame& frame) {
+    record.spaces = parking::read_spaces(options.spaces, frame, options.outputs.geo);
+    return tiles_near(record.spaces, frame);
+  });
+  const VoxelMap& map = loaded.map;
   record.map_name =
       options.map.has_filename() ? options.map.stem().string() : options.map.parent_path().stem().string();
   record.place = options.outputs.city.city.empty() ? record.map_name : options.outputs.city.city;
   record.frame = map.frame;
   record.rule = options.rule;
-  record.spaces = parking::read_spaces(options.spaces, map.frame, options.outputs.geo);
+  if (!is_city(options.map)) record.spaces = parking::read_spaces(options.spaces, map.frame, options.outputs.geo);
   const parking::GroundPlan ground(map.finest());
   check_spaces(options, record.spaces, ground);
   LaterEpoch later = is_map(options.later.front()) ? look_at_map(options, map, record.spaces, ground)
                                                    : look_at_scans(options, common, map, record.spaces, ground);
   record.date = options.date.empty() ? later.date : options.date;
   record.vehicles = std::move(later.evidence.vehicles);
-  const auto before = previous_states(options, map, record.spaces, ground);
+  const auto before = previous_states(loaded, record.spaces, ground);
   for (std::size_t i = 0; i < record.spaces.size(); ++i) {
     record.states.push_back(parking::judge(later.evidence.spaces[i], options.rule));
     record.states.back().previous = before[i];

@@ -6,6 +6,7 @@
 #include <utility>
 
 #include <spdlog/fmt/fmt.h>
+#include <spdlog/spdlog.h>
 
 #include "vdbmap/core/error.h"
 #include "vdbmap/core/parallel.h"
@@ -26,7 +27,7 @@ SurveyTrack read_survey_track(const std::filesystem::path& trajectory, const Eig
   const Trajectory poses = read_trajectory(trajectory);
   if (poses.times.empty()) throw IoError::malformed(trajectory, "has no times, expected a TUM file");
   try {
-    return {PoseTrack(poses.map_from_scan, poses.times), scanner_in_vehicle};
+    return {trajectory, PoseTrack(poses.map_from_scan, poses.times), scanner_in_vehicle};
   } catch (const std::invalid_argument& error) {
     throw IoError::malformed(trajectory, error.what());
   }
@@ -52,6 +53,12 @@ void SurveyRays::for_each(const std::function<void(const PosedCloud&)>& take) {
     take({points.cloud, Eigen::Isometry3d::Identity(), from});
     return UnreachablePoints{};
   });
+}
+
+void SurveyRays::warn() const {
+  if (num_without_ray_ == 0) return;
+  spdlog::warn("{}: {} of {} points are of times without a pose and have no ray", track_.file.string(),
+               num_without_ray_, num_points_);
 }
 
 std::vector<Eigen::Vector3d> SurveyRays::origins(const PointCloud& cloud) {

@@ -16,6 +16,7 @@ namespace vdbmap::cli {
 
 /// From where a survey's points were measured: its vehicle's way, and where the scanner is on the vehicle.
 struct SurveyTrack {
+  std::filesystem::path file;
   PoseTrack map_from_vehicle;
   Eigen::Vector3d scanner_in_vehicle = Eigen::Vector3d::Zero();  ///< [m] the lever arm
 };
@@ -33,8 +34,8 @@ class SurveyRays {
   /// Goes through the files once.
   void for_each(const std::function<void(const PosedCloud&)>& take);
 
-  std::size_t num_points() const { return num_points_; }
-  std::size_t num_without_ray() const { return num_without_ray_; }
+  /// Logs how many points had no ray the last time, if any.
+  void warn() const;
 
  private:
   std::vector<Eigen::Vector3d> origins(const PointCloud& cloud);

@@ -1,14 +1,12 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #pragma once
 
-#include <cstddef>
 #include <cstdint>
 #include <optional>
 
-#include <Eigen/Core>
-
 #include "vdbmap/change/ray_evidence.h"
 #include "vdbmap/change/seen_through.h"
+#include "vdbmap/change/voxel_fates.h"
 #include "vdbmap/core/posed_cloud.h"
 #include "vdbmap/core/visibility.h"
 #include "vdbmap/core/voxel_map.h"
@@ -25,22 +23,6 @@ struct UpdateOptions {
 
   /// Throws std::invalid_argument naming the value and what is allowed.
   void check() const;
-};
-
-/// Linear grey, of voxels that only a drive without colours saw in a map with colours: in pictures, black reads as a
-/// shadow.
-inline const Eigen::Vector3d kUnknownColor = Eigen::Vector3d::Constant(0.25);
-
-/// What became of voxels of the finest level.
-struct UpdateCounts {
-  std::size_t added = 0;             ///< new in the map
-  std::size_t confirmed = 0;         ///< of the map, seen again: points were added
-  std::size_t replaced = 0;          ///< of the map, where the drive saw something else
-  std::size_t gone = 0;              ///< of the map, seen through
-  std::size_t unseen = 0;            ///< of the map, as they were
-  std::size_t moved = 0;             ///< of the drive, left out: something was there for a while only
-  std::size_t num_points = 0;        ///< of the drive
-  std::size_t num_moved_points = 0;  ///< in voxels left out
 };
 
 struct UpdatedMap {

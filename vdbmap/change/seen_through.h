@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #pragma once
 
+#include <cstddef>
 #include <cstdint>
 #include <vector>
 
@@ -26,6 +27,29 @@ struct SeenThroughOptions {
   /// Throws std::invalid_argument naming the value and what is allowed.
   void check() const;
 };
+
+/// How much speaks for a voxel being seen through, by itself.
+enum class SeenGrade : std::uint8_t { kNot, kLikely, kSure };
+
+/// One value a record of `level`; see find_seen_through(). What is up to two voxels around decides.
+std::vector<SeenGrade> grade_seen_through(const VoxelLevel& level, const std::vector<std::uint32_t>& passes,
+                                          const std::vector<TimeBins>& pass_times, const VoxelLevel& drive,
+                                          const std::vector<TimeBins>& presence,
+                                          const SeenThroughOptions& options = {});
+
+/// Voxels in a group differ by at most so much on each axis, or a chain of such leads from one to the other.
+inline constexpr std::int32_t kReachOfGroups = 1;
+
+/// Which records have a grade: they go in groups.
+std::vector<std::uint8_t> are_graded(const std::vector<SeenGrade>& grades);
+
+/// How many records of a group are sure.
+std::size_t count_sure(const std::vector<std::size_t>& group, const std::vector<SeenGrade>& grades);
+
+/// Whether all of a group of touching voxels that are likely or sure are seen through, or the sure ones alone.
+inline bool goes_whole(std::size_t num_sure, std::size_t num_voxels, const SeenThroughOptions& options) {
+  return static_cast<double>(num_sure) >= options.sure_part * static_cast<double>(num_voxels);
+}
 
 /// One value a record of `level`, 1 where it was seen through: when rays went through its voxels, and when points fell
 /// into voxels of `drive`, which has the same size and may be the same level.

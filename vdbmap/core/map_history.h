@@ -44,6 +44,14 @@ struct MapEpoch {
   bool operator==(const MapEpoch&) const = default;
 };
 
+/// Adds an epoch to those before. Where it is the last of them, which goes on, changes add up.
+inline void add_epoch(std::vector<MapEpoch>& epochs, const MapEpoch& epoch) {
+  const bool goes_on = !epochs.empty() && epochs.back().number == epoch.number;
+  if (!goes_on) return epochs.push_back(epoch);
+  if (!epoch.date.empty()) epochs.back().date = epoch.date;
+  epochs.back().changes = epochs.back().changes + epoch.changes;
+}
+
 /// From what a map was made, epoch by epoch.
 struct MapHistory {
   std::vector<MapEpoch> epochs;    ///< sorted by number

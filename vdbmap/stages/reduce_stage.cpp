@@ -53,8 +53,8 @@ void write_bucket(const Job& job, std::size_t bucket, const CountedParts& counte
   std::error_code error;
   std::filesystem::create_directory(tiles, error);
   if (error) throw IoError::system(tiles, "cannot create", error.value());
-  const SaveTile save = [&](const TileId& id, const VoxelMap& tile) {
-    return save_tile(tiles, id, tile, counted.layout.density);
+  const SaveTile save = [&](const TileId& id, const VoxelMap& tile, const std::optional<Visibility>& seen) {
+    return save_tile(tiles, id, tile, counted.layout.density, seen);
   };
   NewTiles made{counted.layout, make_tiles(job, bucket, counted, save), counted.sources};
   const CityManifest manifest = manifest_with(std::nullopt, {}, std::move(made), counted.epoch);

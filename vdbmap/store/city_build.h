@@ -8,6 +8,7 @@
 #include <string>
 #include <vector>
 
+#include "vdbmap/core/posed_cloud.h"
 #include "vdbmap/io/map_from_files.h"
 #include "vdbmap/io/vdb/map_file.h"
 #include "vdbmap/store/city_manifest.h"
@@ -30,7 +31,10 @@ struct CityBuildOptions {
   std::vector<std::string> removed;                                   ///< sources of the city that go, by name or hash
   std::vector<SourceReplacement> replaced;                            ///< and of which others take the place
   std::size_t keep_epochs = std::numeric_limits<std::size_t>::max();  ///< the latest, 1 or more
-  std::function<void()> on_file_hashed = [] {};                       ///< called by any thread
+  std::string date;  ///< of the epoch, ISO 8601; empty where nobody says
+  /// The points of inputs with the rays by which they were measured; without, of rays nothing is known.
+  std::function<void(const std::vector<MapInput>& counted, const std::function<void(const PosedCloud&)>& take)> rays;
+  std::function<void()> on_file_hashed = [] {};  ///< called by any thread
   std::function<void(std::size_t num_scans)> on_reading_begun = [](std::size_t) {};
   std::function<void(std::size_t num_tiles)> on_tiles_begun = [](std::size_t) {};
   std::function<void()> on_tile_done = [] {};  ///< called by any thread
@@ -49,8 +53,9 @@ struct CityBuilt {
 /// Makes a city of the points of files. Its tiles are those of the map that build_map_from_files() makes of the inputs
 /// in the order of their names, byte for byte, for any memory, number of threads and order of the inputs. Without an
 /// anchor it is that of the first of them by name. A city that is there already is replaced where all of its sources
-/// are among the inputs. Throws as build_map_from_files() does, std::invalid_argument where a city of other sources
-/// is there, and IoError where the folder cannot be written or is another's; the folder is then as it was.
+/// are among the inputs. With rays, what they saw is that of find_visibility(). Throws as build_map_from_files() does,
+/// std::invalid_argument where a city of other sources is there, and IoError where the folder cannot be written or is
+/// another's; the folder is then as it was.
 CityBuilt build_city(const std::filesystem::path& folder, const std::vector<MapInput>& inputs,
                      const CityBuildOptions& options);
 

@@ -30,7 +30,7 @@ class StoredMap {
   bool is_in_tiles() const { return city_.has_value(); }
   const CityManifest& manifest() const { return city_->manifest; }
   const MapFrame& frame() const { return city_ ? city_->manifest.layout.frame : whole_->map.frame; }
-  bool has_rays() const { return has_rays_ || (whole_ && whole_->visibility); }
+  bool has_rays() const { return city_ ? vdbmap::has_rays(city_->manifest) : whole_->visibility.has_value(); }
   std::optional<Extent> box() const { return city_ ? extent(city_->manifest) : extent(whole_->map); }
 
   std::vector<TileId> tiles() const {
@@ -44,7 +44,6 @@ class StoredMap {
   SeenMap window(const TileRange& range) {
     if (!city_) return whole_->seen();
     window_ = load_seen_window(*city_, [&](const CityTile& tile) { return contains(range, tile.id); });
-    has_rays_ |= window_->visibility.has_value();
     return window_->seen();
   }
 
@@ -52,7 +51,6 @@ class StoredMap {
   std::optional<City> city_;
   std::optional<LoadedMap> whole_;
   std::optional<LoadedMap> window_;
-  bool has_rays_ = false;
 };
 
 // What is added to tiles of the earlier map to have those of the later one's frame.

@@ -23,15 +23,26 @@ constexpr std::size_t kSourceHashSize = 32;
 
 Json json_of(const Eigen::Vector3d& point) { return {point.x(), point.y(), point.z()}; }
 
+// Without voxels there is no box, and JSON has no infinity.
 Json json_of(const CityTile& tile) {
-  return {{"x", tile.id.x},
-          {"y", tile.id.y},
-          {"hash", tile.hash},
-          {"bytes", tile.num_bytes},
-          {"points", tile.num_points},
-          {"voxels", tile.num_voxels},
-          {"min", json_of(tile.extent.min)},
-          {"max", json_of(tile.extent.max)}};
+  const bool has_box = tile.extent.min.allFinite() && tile.extent.max.allFinite();
+  Json json = {{"x", tile.id.x},
+               {"y", tile.id.y},
+               {"hash", tile.hash},
+               {"bytes", tile.num_bytes},
+               {"points", tile.num_points},
+               {"voxels", tile.num_voxels},
+               {"min", has_box ? json_of(tile.extent.min) : Json(nullptr)},
+               {"max", has_box ? json_of(tile.extent.max) : Json(nullptr)}};
+  if (tile.has_rays) json["rays"] = true;
+  return json;
+}
+
+Json json_of(const MapEpoch& epoch) {
+  const MapChanges& changes = epoch.changes;
+  return {{"number", epoch.number},         {"date", epoch.date},           {"added", changes.added},
+          {"confirmed", changes.confirmed}, {"replaced", changes.replaced}, {"gone", changes.gone},
+          {"unseen", changes.unseen},       {"moved", changes.moved}};
 }
 
 Json json_of(const MapSource& source) {
@@ -105,11 +116,21 @@ CityTile tile_of(const JsonField& field, std::size_t num_levels) {
   tile.num_bytes = field.at("bytes").count();
   tile.num_points = field.at("points").count();
   for (const JsonField& count : field.at("voxels").elements()) tile.num_voxels.push_back(count.count());
-  if (tile.num_voxels.size() != num_levels || std::ranges::count(tile.num_voxels, 0U) > 0) {
+  if (field.has("rays")) tile.has_rays = field.at("rays").truth();
+  const auto num_empty = static_cast<std::size_t>(std::ranges::count(tile.num_voxels, 0U));
+  const bool may_be_empty = tile.has_rays && num_empty == num_levels;
+  if (tile.num_voxels.size() != num_levels || (num_empty > 0 && !may_be_empty)) {
     field.at("voxels").fail("is no list of " + std::to_string(num_levels) + " numbers of voxels above 0");
   }
-  tile.extent = {field.at("min").point(), field.at("max").point()};
+  if (num_empty == 0) tile.extent = {field.at("min").point(), field.at("max").point()};
   return tile;
+}
+
+MapEpoch epoch_of(const JsonField& field) {
+  return {field.at("number").integer(),
+          field.at("date").text(),
+          {field.at("added").count(), field.at("confirmed").count(), field.at("replaced").count(),
+           field.at("gone").count(), field.at("unseen").count(), field.at("moved").count()}};
 }
 
 MapSource source_of(const JsonField& field) {
@@ -130,14 +151,20 @@ CityPart part_of(const JsonField& field, const std::set<std::string>& sources) {
 
 bool CityTile::operator==(const CityTile& other) const {
   return id == other.id && hash == other.hash && num_bytes == other.num_bytes && num_points == other.num_points &&
-         num_voxels == other.num_voxels && extent.min == other.extent.min && extent.max == other.extent.max;
+         num_voxels == other.num_voxels && extent.min == other.extent.min && extent.max == other.extent.max &&
+         has_rays == other.has_rays;
+}
+
+bool has_rays(const CityManifest& manifest) {
+  return std::ranges::count(manifest.tiles, true, &CityTile::has_rays) > 0;
 }
 
 std::string text_of(const CityManifest& manifest) {
   const CityLayout& layout = manifest.layout;
   std::string text = "{\n";
   add_line(text, "format", dump(kFormatName));
-  add_line(text, "version", dump(kCityFormat));
+  const bool is_of_version_1 = manifest.epochs.empty() && !has_rays(manifest);
+  add_line(text, "version", dump(is_of_version_1 ? 1 : kCityFormat));
   add_line(text, "epoch", dump(manifest.epoch));
   add_line(text, "anchor", dump(json_of(layout.frame.anchor)));
   add_line(text, "epsg", dump(layout.frame.epsg ? Json(*layout.frame.epsg) : Json(nullptr)));
@@ -147,6 +174,7 @@ std::string text_of(const CityManifest& manifest) {
   add_line(text, "channels", dump(Json(layout.channels)));
   add_line(text, "label_scheme", dump(std::string(vdbmap::text_of(layout.label_scheme))));
   add_line(text, "density", dump(layout.density));
+  if (!manifest.epochs.empty()) add_line(text, "epochs", lines_of(manifest.epochs));
   add_line(text, "tiles", lines_of(manifest.tiles));
   if (!manifest.parts.empty()) add_line(text, "parts", lines_of(manifest.parts));
   return text + "  \"sources\": " + lines_of(manifest.sources) + "\n}\n";
@@ -155,7 +183,7 @@ std::string text_of(const CityManifest& manifest) {
 CityManifest parse_city_manifest(std::string_view text, const std::filesystem::path& path) {
   const Json json = parse_json(text, path);
   const JsonField root(json, "", path);
-  root.check_format(kFormatName, kCityFormat);
+  root.check_format(kFormatName, 1, kCityFormat);
   CityManifest manifest;
   manifest.epoch = root.at("epoch").integer();
   if (manifest.epoch < 0) root.at("epoch").fail("is below 0");
@@ -167,6 +195,9 @@ CityManifest parse_city_manifest(std::string_view text, const std::filesystem::p
     if (count > 1 && !(manifest.tiles[count - 2].id < manifest.tiles[count - 1].id)) field.fail("is out of order");
   }
   for (const JsonField& field : root.at("sources").elements()) manifest.sources.push_back(source_of(field));
+  if (root.has("epochs")) {
+    for (const JsonField& field : root.at("epochs").elements()) manifest.epochs.push_back(epoch_of(field));
+  }
   if (!root.has("parts")) return manifest;
   std::set<std::string> sources;
   for (const MapSource& source : manifest.sources) sources.insert(source.hash);

@@ -3,6 +3,7 @@
 
 #include <cstdint>
 #include <filesystem>
+#include <limits>
 #include <optional>
 #include <string>
 #include <string_view>
@@ -26,6 +27,10 @@ struct CityLayout {
   bool operator==(const CityLayout&) const = default;
 };
 
+/// The box around nothing: least and largest are infinite, so that any box joined with it stays what it is.
+inline const Extent kNoExtent{Eigen::Vector3d::Constant(std::numeric_limits<double>::infinity()),
+                              Eigen::Vector3d::Constant(-std::numeric_limits<double>::infinity())};
+
 /// A file of a city. What is counted here is what the file holds: `check` compares them.
 struct CityTile {
   TileId id;
@@ -33,7 +38,8 @@ struct CityTile {
   std::uint64_t num_bytes = 0;            ///< of the file
   std::uint64_t num_points = 0;           ///< counted in its voxels
   std::vector<std::uint64_t> num_voxels;  ///< a level
-  Extent extent{};                        ///< of its voxels [m, original system]
+  Extent extent = kNoExtent;              ///< of its voxels [m, original system]; without one kNoExtent
+  bool has_rays = false;                  ///< whether the file says what rays saw
 
   bool operator==(const CityTile& other) const;
 };
@@ -51,15 +57,17 @@ struct CityPart {
 struct CityManifest {
   std::int32_t epoch = 0;  ///< number of the latest survey in it; 0 where none was given
   CityLayout layout;
-  std::vector<CityTile> tiles;       ///< sorted, each with a voxel at least
-  std::vector<MapSource> sources;    ///< sorted by epoch, name and hash
-  std::vector<CityPart> parts = {};  ///< sorted by source; empty where none are kept
+  std::vector<CityTile> tiles;        ///< sorted, each with a voxel at least, or what rays saw
+  std::vector<MapSource> sources;     ///< sorted by epoch, name and hash
+  std::vector<MapEpoch> epochs = {};  ///< sorted by number: those of which a date or what changed is known
+  std::vector<CityPart> parts = {};   ///< sorted by source; empty where none are kept
 
   bool operator==(const CityManifest&) const = default;
 };
 
-/// Version of the manifests that we write; of newer ones nothing is known.
-inline constexpr std::int32_t kCityFormat = 1;
+/// Version of the manifests that we write; of newer ones nothing is known. Cities of version 1 have no rays and no
+/// dates, and are still written as such: a program that knows no more would lose the rays of what it adds to.
+inline constexpr std::int32_t kCityFormat = 2;
 
 /// The manifest as JSON, a line a tile and a source. Equal manifests give equal texts.
 std::string text_of(const CityManifest& manifest);
@@ -79,6 +87,9 @@ std::vector<std::string> channel_names(const VoxelMap& map);
 
 /// What is counted of a tile, apart from its file.
 CityTile describe_tile(const TileId& id, const VoxelMap& tile);
+
+/// Whether any tile says what rays saw.
+bool has_rays(const CityManifest& manifest);
 
 /// The tile of that id, or nullptr.
 const CityTile* find_tile(const CityManifest& manifest, const TileId& id);

@@ -15,4 +15,8 @@ namespace vdbmap {
 CityManifest save_city(const std::filesystem::path& folder, const VoxelMap& map, const SaveOptions& options = {},
                        const std::vector<MapSource>& sources = {});
 
+/// The same with what is known beside the voxels: tiles then say what rays saw, also those without a voxel.
+CityManifest save_city(const std::filesystem::path& folder, const VoxelMap& map, const MapExtras& extras,
+                       const SaveOptions& options = {});
+
 }  // namespace vdbmap

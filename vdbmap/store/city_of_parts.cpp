@@ -102,7 +102,10 @@ CityBuilt write_city_of_parts(CityWriter& writer, const std::optional<City>& bas
   }
   options.on_tiles_begun(ids.size());
   std::vector<CityTile> made = tiles.make(
-      ids, [&](const TileId& id, const VoxelMap& tile) { return writer.save_tile(id, tile, tiles.layout().density); },
+      ids,
+      [&](const TileId& id, const VoxelMap& tile, const std::optional<Visibility>& seen) {
+        return writer.save_tile(id, tile, tiles.layout().density, seen);
+      },
       options.on_tile_done);
   const std::int32_t epoch = options.files.build.epoch.value_or(base ? base->manifest.epoch : 0);
   CityBuilt built{manifest_of(std::move(kept), std::move(made), tiles.layout(), sources, epoch),
@@ -111,6 +114,8 @@ CityBuilt write_city_of_parts(CityWriter& writer, const std::optional<City>& bas
                   std::move(changes.not_counted),
                   std::move(changes.removed),
                   std::move(changes.not_found)};
+  if (base) built.manifest.epochs = base->manifest.epochs;
+  if (!options.date.empty()) add_epoch(built.manifest.epochs, {epoch, options.date, {}});
   for (const MapSource& source : changes.sources) {
     const auto counted = std::ranges::find(sources, source.hash, [](const KeptSource& s) { return s.source.hash; });
     built.added.push_back(counted->source);

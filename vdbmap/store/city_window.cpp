@@ -47,6 +47,7 @@ VoxelMap load_checked(const City& city, const CityTile& tile) {
   VoxelMap map = load_map(path);
   const std::string problem = tile_problem(map, tile, city.manifest.layout);
   if (!problem.empty()) throw IoError::malformed(path, problem);
+  map.has_color = city.manifest.layout.has_color;
   return map;
 }
 
@@ -105,6 +106,10 @@ VoxelMap load_tiles(City& city, const TileChoice& is_wanted, const Load& load) {
 
 std::string tile_problem(const VoxelMap& map, const CityTile& tile, const CityLayout& layout) {
   CityLayout found = layout_of(map, layout.density);
+  if (map.finest().size() == 0) {  // of attributes nothing is known
+    found.has_color = layout.has_color;
+    found.channels = layout.channels;
+  }
   if (found.label_scheme != layout.label_scheme) return "has labels of another scheme than the city";
   if (found.frame != layout.frame) return "has another anchor or EPSG code than the city";
   if (found.voxel_sizes != layout.voxel_sizes) return "has other levels than the city";
@@ -113,7 +118,7 @@ std::string tile_problem(const VoxelMap& map, const CityTile& tile, const CityLa
   const bool is_counted = counted.num_points == tile.num_points && counted.num_voxels == tile.num_voxels &&
                           counted.extent.min == tile.extent.min && counted.extent.max == tile.extent.max;
   if (!is_counted) return "holds other voxels than the manifest counts";
-  if (tiles_of(map) != std::vector{tile.id}) return "holds voxels of other tiles";
+  if (map.finest().size() > 0 && tiles_of(map) != std::vector{tile.id}) return "holds voxels of other tiles";
   return "";
 }
 

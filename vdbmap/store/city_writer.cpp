@@ -158,10 +158,12 @@ void check_tile_file(const Path& path, const CityTile& tile) {
   throw IoError::malformed(path, "is not the tile that its name says");
 }
 
-CityTile save_tile(const Path& tiles_folder, const TileId& id, const VoxelMap& tile, float density) {
+CityTile save_tile(const Path& tiles_folder, const TileId& id, const VoxelMap& tile, float density,
+                   const std::optional<Visibility>& visibility) {
   const Path unnamed = tiles_folder / (tile_name(id) + ".vdb");
-  save_map(unnamed, tile, {density});
+  save_map(unnamed, tile, {visibility, {}}, {density});
   CityTile described = describe_tile(id, tile);
+  described.has_rays = visibility.has_value();
   described.hash = *stated_checksum(unnamed);
   described.num_bytes = std::filesystem::file_size(unnamed);
   // A file of that name is the same already, or was damaged.
@@ -170,8 +172,9 @@ CityTile save_tile(const Path& tiles_folder, const TileId& id, const VoxelMap& t
   return described;
 }
 
-CityTile CityWriter::save_tile(const TileId& id, const VoxelMap& tile, float density) const {
-  return vdbmap::save_tile(tiles_path(folder_), id, tile, density);
+CityTile CityWriter::save_tile(const TileId& id, const VoxelMap& tile, float density,
+                               const std::optional<Visibility>& visibility) const {
+  return vdbmap::save_tile(tiles_path(folder_), id, tile, density, visibility);
 }
 
 void CityWriter::adopt_tile(const CityTile& tile, const Path& city) const {

@@ -6,15 +6,17 @@
 #include <optional>
 #include <span>
 
+#include "vdbmap/core/visibility.h"
 #include "vdbmap/store/city_folder.h"
 #include "vdbmap/store/city_lock.h"
 #include "vdbmap/store/part_file.h"
 
 namespace vdbmap {
 
-/// Saves a tile in a folder of tiles under the name of its content, and counts it. Several threads, but one process,
-/// may save tiles in it at a time.
-CityTile save_tile(const std::filesystem::path& tiles_folder, const TileId& id, const VoxelMap& tile, float density);
+/// Saves a tile in a folder of tiles under the name of its content, with what rays saw of it, and counts it. Several
+/// threads, but one process, may save tiles in it at a time.
+CityTile save_tile(const std::filesystem::path& tiles_folder, const TileId& id, const VoxelMap& tile, float density,
+                   const std::optional<Visibility>& visibility = {});
 
 /// Throws IoError, malformed, unless size and stated checksum of a file are those of a tile. That its content has this
 /// checksum is what `check` looks at.
@@ -44,7 +46,8 @@ class CityWriter {
   std::size_t num_epochs() const { return num_epochs_; }
 
   /// Saves a tile under the name of its content and counts it. Several threads may save tiles at a time.
-  CityTile save_tile(const TileId& id, const VoxelMap& tile, float density) const;
+  CityTile save_tile(const TileId& id, const VoxelMap& tile, float density,
+                     const std::optional<Visibility>& visibility = {}) const;
 
   /// Takes a tile that lies in another city: another name of the same file where the file system knows that, else a
   /// copy. Throws IoError, malformed where it is not the file that `tile` says.

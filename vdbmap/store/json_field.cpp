@@ -14,9 +14,13 @@ nlohmann::ordered_json parse_json(std::string_view text, const std::filesystem::
 void JsonField::fail(const std::string& reason) const { throw IoError::malformed(path_, name_ + " " + reason); }
 
 void JsonField::check_format(const std::string& format, std::int32_t version) const {
+  check_format(format, version, version);
+}
+
+void JsonField::check_format(const std::string& format, std::int32_t oldest, std::int32_t version) const {
   if (at("format").text() != format) at("format").fail("is not '" + format + "'");
   const std::int32_t given = at("version").integer();
-  if (given == version) return;
+  if (oldest <= given && given <= version) return;
   at("version").fail("is " + std::to_string(given) + (given > version ? ", newer than" : ", expected") + " the " +
                      std::to_string(version) + " that this program knows");
 }

@@ -29,6 +29,9 @@ class JsonField {
   /// Checks the fields `format` and `version` of a file that says what it is.
   void check_format(const std::string& format, std::int32_t version) const;
 
+  /// The same where versions from `oldest` on are known.
+  void check_format(const std::string& format, std::int32_t oldest, std::int32_t version) const;
+
   bool has(const std::string& key) const { return json_.is_object() && json_.contains(key); }
   JsonField at(const std::string& key) const;
   std::vector<JsonField> elements() const;

@@ -95,7 +95,7 @@ std::vector<CityTile> TilesOfSources::make(std::span<const TileId> ids, const Sa
     parallel_tasks(std::min(num_threads(), ids.size() - begin), [&](std::size_t i) {
       const TileId& id = ids[begin + i];
       const VoxelMap tile = make(id);
-      if (tile.finest().size() > 0) saved[begin + i] = save(id, tile);
+      if (tile.finest().size() > 0) saved[begin + i] = save(id, tile, std::nullopt);
       on_tile_done();
     });
   }

@@ -35,7 +35,9 @@ struct MapWindows::CityWindows {
 
   CityWindows(City opened, const TileChoice& is_wanted, std::size_t bytes)
       : city(std::move(opened)), kept_bytes(bytes) {
-    std::ranges::copy_if(city.manifest.tiles, std::back_inserter(tiles), is_wanted);
+    // Tiles that rays alone entered have nothing to look at.
+    std::ranges::copy_if(city.manifest.tiles, std::back_inserter(tiles),
+                         [&](const CityTile& tile) { return tile.num_voxels.front() > 0 && is_wanted(tile); });
   }
 
   bool is_chosen(const CityTile& tile) const { return std::ranges::find(tiles, tile) != tiles.end(); }

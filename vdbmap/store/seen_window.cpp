@@ -61,7 +61,7 @@ LoadedMap load_seen_window(City& city, const TileChoice& is_wanted) {
   if (city.manifest != before) throw IoError::malformed(city.folder, "was changed while it was read");
   std::vector<LoadedMap> tiles;
   for (const CityTile& tile : city.manifest.tiles) {
-    if (is_wanted(tile) && has_visibility(tile_path(city.folder, tile))) {
+    if (is_wanted(tile) && tile.has_rays) {
       tiles.push_back(load_seen_map(tile_path(city.folder, tile)));
     }
   }

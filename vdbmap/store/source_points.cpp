@@ -10,12 +10,6 @@
 namespace vdbmap {
 namespace {
 
-// [points] that are read and sorted at once: they take some 250 bytes each, with those read ahead, until they are sums;
-// of these points a third of the memory. The more of them, the fewer times sums are merged.
-std::size_t points_at_once(std::size_t memory_bytes) {
-  return std::clamp<std::size_t>(memory_bytes / 3 / 250, std::size_t{1} << 14, std::size_t{1} << 21);
-}
-
 UnreachablePoints add_cloud(TileSums& sums, const PointCloud& cloud, const Eigen::Isometry3d& local_from_cloud,
                             double per_metre, std::size_t at_once) {
   UnreachablePoints unreachable{0, Eigen::Vector3d::Zero(), kIndexLimit / per_metre};
@@ -67,6 +61,10 @@ std::optional<Eigen::Vector3d> find_anchor(const MapInput& input, const InputOpt
 
 }  // namespace
 
+std::size_t points_at_once(std::size_t memory_bytes) {
+  return std::clamp<std::size_t>(memory_bytes / 3 / 250, std::size_t{1} << 14, std::size_t{1} << 21);
+}
+
 void PointKinds::add(const PointCloud& cloud) {
   add({!cloud.colors.empty(), !cloud.intensities.empty(), !cloud.labels.empty()});
 }
@@ -106,6 +104,21 @@ CountedPoints count_points(TileSums& sums, const std::vector<MapInput>& inputs, 
     return unreachable;
   });
   return points;
+}
+
+PointKinds count_clouds(TileSums& sums, const CloudSource& clouds, const Eigen::Vector3d& anchor, double voxel_size,
+                        std::size_t memory_bytes) {
+  const double per_metre = voxels_per_metre(voxel_size);
+  PointKinds kinds;
+  clouds([&](const PosedCloud& posed) {
+    if (posed.cloud.empty()) return;
+    Eigen::Isometry3d local_from_cloud = posed.map_from_cloud;
+    local_from_cloud.translation() -= anchor;
+    kinds.add(posed.cloud);
+    check_reached(add_cloud(sums, posed.cloud, local_from_cloud, per_metre, points_at_once(memory_bytes)),
+                  posed.cloud.size());
+  });
+  return kinds;
 }
 
 CityLayout layout_of_points(const Eigen::Vector3d& anchor, const PointKinds& kinds, const InputNotes& notes,

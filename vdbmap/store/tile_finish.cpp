@@ -132,6 +132,11 @@ void TileNeighborhood::load_around(std::span<const TileId> tiles) {
   }
 }
 
+const VoxelMap* TileNeighborhood::tile(const TileId& tile) const {
+  const auto found = loaded_.find(tile);
+  return found == loaded_.end() ? nullptr : &found->second;
+}
+
 std::optional<VoxelMap> TileNeighborhood::window(const TileId& tile, double margin) const {
   std::vector<VoxelMap> parts;
   for (const TileId& id : tiles_in_and_around(tile)) {

@@ -22,6 +22,9 @@ class TileNeighborhood {
   /// that is missing.
   void load_around(std::span<const TileId> tiles);
 
+  /// A tile that is loaded, or nullptr.
+  const VoxelMap* tile(const TileId& tile) const;
+
   /// The voxels of a tile and of the margin [m] around it, those of load_around(); nothing where it has none.
   std::optional<VoxelMap> window(const TileId& tile, double margin) const;
 

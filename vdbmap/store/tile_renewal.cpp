@@ -9,6 +9,7 @@
 #include "vdbmap/core/parallel_tasks.h"
 #include "vdbmap/store/city_window.h"
 #include "vdbmap/store/tile_finish.h"
+#include "vdbmap/store/tile_visibility.h"
 
 namespace vdbmap {
 std::vector<CityTile> renew_tiles(std::span<const TileId> ids, const TileRenewal& renewal) {
@@ -24,7 +25,8 @@ std::vector<CityTile> renew_tiles(std::span<const TileId> ids, const TileRenewal
       const TileId& id = batch[i];
       const VoxelMap tile =
           finish_tile(id, renewal.take_sums(id), finest, before.window(id, margin), renewal.added, renewal.layout);
-      if (tile.finest().size() > 0) saved[begin + i] = renewal.save(id, tile);
+      const std::optional<Visibility> seen = carry_visibility(renewal.base, id, tile);
+      if (tile.finest().size() > 0 || seen) saved[begin + i] = renewal.save(id, tile, seen);
       renewal.on_tile_done();
     });
   }
@@ -41,7 +43,8 @@ std::vector<CityTile> keep_tiles(const City& base, std::vector<CityTile> tiles, 
   parallel_tasks(tiles.size(), [&](std::size_t i) {
     std::optional<VoxelMap> map = load_tile(base, tiles[i]);
     if (!map) throw IoError::malformed(tile_path(base.folder, tiles[i]), "is missing");
-    tiles[i] = save(tiles[i].id, in_layout(std::move(*map), layout));
+    const std::optional<Visibility> seen = load_tile_visibility(base, tiles[i], *map);
+    tiles[i] = save(tiles[i].id, in_layout(std::move(*map), layout), seen);
   });
   return tiles;
 }

@@ -8,12 +8,13 @@
 #include <vector>
 
 #include "vdbmap/core/finest_level.h"
+#include "vdbmap/core/visibility.h"
 #include "vdbmap/store/city_folder.h"
 
 namespace vdbmap {
 
-/// Saves a tile somewhere and counts it. Several threads may do so at a time.
-using SaveTile = std::function<CityTile(const TileId&, const VoxelMap&)>;
+/// Saves a tile, and what rays saw of it, somewhere and counts it. Several threads may do so at a time.
+using SaveTile = std::function<CityTile(const TileId&, const VoxelMap&, const std::optional<Visibility>&)>;
 
 /// What tiles are made anew of.
 struct TileRenewal {

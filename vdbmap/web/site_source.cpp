@@ -67,7 +67,9 @@ void SiteSource::take(VoxelMap map) {
 void SiteSource::take(City city) {
   layout_ = city.manifest.layout;
   newest_epoch_ = city.manifest.epoch;
-  for (const CityTile& tile : city.manifest.tiles) tiles_.push_back(tile.id);
+  for (const CityTile& tile : city.manifest.tiles) {
+    if (tile.num_voxels.front() > 0) tiles_.push_back(tile.id);
+  }
   voxels_ = std::move(city);
 }
 

@@ -61,8 +61,22 @@ TEST(CityManifest, EveryPlaceWhereItIsCutIsDamage) {
 }
 
 TEST(CityManifest, ANewerOneIsRefused) {
-  const std::string text = replaced(text_of(sample_manifest()), "\"version\": 1", "\"version\": 2");
-  EXPECT_EQ(problem_of(text), "map.json: version is 2, newer than the 1 that this program knows");
+  const std::string text = replaced(text_of(sample_manifest()), "\"version\": 1", "\"version\": 3");
+  EXPECT_EQ(problem_of(text), "map.json: version is 3, newer than the 2 that this program knows");
+}
+
+TEST(CityManifest, WithRaysOrDatesIsOfTheNextVersionAndReadAsItWasWritten) {
+  CityManifest manifest = sample_manifest();
+  manifest.tiles.push_back({{3, 0}, "00000000000000000002", 9, 0, {0, 0}});
+  manifest.tiles.back().has_rays = true;
+  manifest.epochs = {{3, "2023-09-14", {1, 2, 3, 4, 5, 6}}};
+  const std::string text = text_of(manifest);
+  EXPECT_NE(text.find("\"version\": 2"), std::string::npos);
+  EXPECT_EQ(parse_city_manifest(text, "map.json"), manifest);
+  EXPECT_TRUE(has_rays(manifest));
+  EXPECT_EQ(extent(manifest)->max, extent(sample_manifest())->max);
+  // Without rays, a tile has voxels.
+  EXPECT_NE(problem_of(replaced(text, ",\"rays\":true", "")).find("tiles[2].voxels"), std::string::npos);
 }
 
 TEST(CityManifest, WhatCannotBeIsNamedWithItsPlace) {
