@@ -13,6 +13,7 @@ packages=("${build_packages[@]}" "${test_packages[@]}")
 if [[ $preset == asan ]]; then packages+=("${sanitizer_packages[@]}"); fi
 install_missing "${packages[@]}"
 for folder in tests/exchange tests/web; do
+  if [[ $folder/node_modules/.package-lock.json -nt $folder/package-lock.json ]]; then continue; fi # is installed
   npm ci --prefix $folder --ignore-scripts --no-audit --no-fund || echo "tests that need the packages of $folder will skip" # with CI=true that fails
 done
 cmake --preset "$preset"

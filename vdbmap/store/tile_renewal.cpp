@@ -12,7 +12,9 @@
 #include "vdbmap/store/tile_visibility.h"
 
 namespace vdbmap {
+
 std::vector<CityTile> renew_tiles(std::span<const TileId> ids, const TileRenewal& renewal) {
+  if (ids.empty()) return {};
   const FinestLevelOptions finest = finest_options(renewal.added, renewal.epoch);
   const double margin = neighbor_margin(renewal.layout.voxel_sizes);
   std::vector<std::optional<CityTile>> saved(ids.size());
