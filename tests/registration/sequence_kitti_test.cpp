@@ -70,7 +70,7 @@ PointCloud turned(PointCloud scan, double yaw) {
   return scan;
 }
 
-SequenceResult localize(const SequenceDrive& drive, const VoxelMap& map, double yaw, std::size_t batch_size) {
+SequenceResult localize_drive(const SequenceDrive& drive, const VoxelMap& map, double yaw, std::size_t batch_size) {
   LocalizerOptions options;
   options.batch_size = batch_size;
   SequenceLocalizer localizer(map, options);
@@ -79,8 +79,8 @@ SequenceResult localize(const SequenceDrive& drive, const VoxelMap& map, double 
 }
 
 // What the issue asks: 0.10 m and 0.5 degrees.
-void expect_found(const SequenceDrive& drive, double yaw, std::size_t batch_size) {
-  const SequenceResult result = localize(drive, drive.map, yaw, batch_size);
+void expect_drive_found(const SequenceDrive& drive, double yaw, std::size_t batch_size) {
+  const SequenceResult result = localize_drive(drive, drive.map, yaw, batch_size);
   const Eigen::Isometry3d scan_from_turned(Eigen::AngleAxisd(-yaw, Eigen::Vector3d::UnitZ()));
   for (std::size_t i = 0; i < drive.scans.size(); ++i) {
     EXPECT_TRUE(result.scans[i].found()) << i << ": " << result.scans[i].reason;
@@ -90,18 +90,18 @@ void expect_found(const SequenceDrive& drive, double yaw, std::size_t batch_size
   }
 }
 
-TEST_F(SequenceKitti, FindsEveryScanOfACityStreet) { expect_found(*city(), 2.2, 20); }
+TEST_F(SequenceKitti, FindsEveryScanOfACityStreet) { expect_drive_found(*city(), 2.2, 20); }
 
-TEST_F(SequenceKitti, FindsEveryScanOfAResidentialStreet) { expect_found(*residential(), -1.1, 8); }
+TEST_F(SequenceKitti, FindsEveryScanOfAResidentialStreet) { expect_drive_found(*residential(), -1.1, 8); }
 
-TEST_F(SequenceKitti, FindsEveryScanInSmallBatches) { expect_found(*city(), -2.9, 5); }
+TEST_F(SequenceKitti, FindsEveryScanInSmallBatches) { expect_drive_found(*city(), -2.9, 5); }
 
 TEST_F(SequenceKitti, FindsNoScanOfAnotherStreet) {
   for (const std::size_t batch_size : {4U, 20U}) {
-    for (const SequenceScan& scan : localize(*residential(), city()->map, 0.7, batch_size).scans) {
+    for (const SequenceScan& scan : localize_drive(*residential(), city()->map, 0.7, batch_size).scans) {
       EXPECT_FALSE(scan.found());
     }
-    for (const SequenceScan& scan : localize(*city(), residential()->map, 0.7, batch_size).scans) {
+    for (const SequenceScan& scan : localize_drive(*city(), residential()->map, 0.7, batch_size).scans) {
       EXPECT_FALSE(scan.found());
     }
   }

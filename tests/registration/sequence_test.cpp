@@ -98,16 +98,16 @@ constexpr int kJoltedScans = 10;
 
 // Whose time stamps are common to all scans, or begin anew with each.
 std::vector<PointCloud> jolted_scans(bool have_common_epoch) {
-  constexpr double kPeriod = 0.1;  // [s]
+  constexpr double kTimeOfScan = 0.1;  // [s]
   std::vector<PointCloud> scans;
   for (int i = 0; i < kJoltedScans; ++i) {
     test::Scanner scanner;
     scanner.num_azimuths = 600;
     scanner.range_noise = 0.01;
     scanner.seed = static_cast<unsigned>(i) + 1;
-    scans.push_back(test::scan_while_moving(test::village(), jolted_sensor_at, kPeriod * i, kPeriod, scanner));
+    scans.push_back(test::scan_while_moving(test::village(), jolted_sensor_at, kTimeOfScan * i, kTimeOfScan, scanner));
     if (have_common_epoch) continue;
-    for (double& time : scans.back().times) time -= kPeriod * i;
+    for (double& time : scans.back().times) time -= kTimeOfScan * i;
   }
   return scans;
 }

@@ -17,7 +17,7 @@ Eigen::AlignedBox3d box_of(const nlohmann::json& volume) {
   return {center - half, center + half};
 }
 
-Eigen::Affine3d transform_of(const nlohmann::json& tile) {
+Eigen::Affine3d transform_of_tile(const nlohmann::json& tile) {
   Eigen::Affine3d transform = Eigen::Affine3d::Identity();
   if (!tile.contains("transform")) return transform;
   for (Eigen::Index i = 0; i < 16; ++i)
@@ -39,7 +39,7 @@ class Walk {
  private:
   void visit(const nlohmann::json& tile, const std::filesystem::path& file, const Eigen::Affine3d& parent,
              std::optional<std::size_t> above) {
-    const Eigen::Affine3d world_from_tile = parent * transform_of(tile);
+    const Eigen::Affine3d world_from_tile = parent * transform_of_tile(tile);
     const Eigen::AlignedBox3d box = box_of(tile.at("boundingVolume"));
     const double error = tile.at("geometricError");
     if (tile.contains("content")) {

@@ -82,7 +82,7 @@ TEST(ChildProcess, OnlyOurLogGoesToStderr) {
 }
 
 // A small file as other programs write them: a sphere of fog and some numbers.
-std::string foreign_file(const std::filesystem::path& path) {
+std::string foreign_vdb(const std::filesystem::path& path) {
   openvdb::initialize();
   const auto density = openvdb::FloatGrid::create(0);
   density->setName("density");
@@ -138,7 +138,7 @@ class ForeignVdb : public testing::Test {
 };
 
 TEST_F(ForeignVdb, WhateverIsDamagedTheAnswerIsOneLineAndAnExitCode) {
-  const std::string whole = foreign_file(path_);
+  const std::string whole = foreign_vdb(path_);
   int num_refused = 0;
   for (std::size_t i = 17; i < whole.size(); i += whole.size() / 24) {
     std::string damaged = whole;
@@ -175,7 +175,7 @@ TEST_F(ForeignVdb, ABlockLargerThanAllMemoryIsRefused) {
 
 // OpenVDB warns of trees as those of its first versions, which had several buffers.
 TEST_F(ForeignVdb, AWarningOfOpenVdbIsNoSecondLine) {
-  std::string damaged = foreign_file(path_);
+  std::string damaged = foreign_vdb(path_);
   const std::size_t num_buffers =
       damaged.find(test::raw(1, 0.0F, 0U));  // before the background and the number of tiles
   ASSERT_NE(num_buffers, std::string::npos);

@@ -22,7 +22,7 @@ namespace {
 using test::CommandResult;
 using test::RunOptions;
 
-CommandResult vdbmap(const std::vector<std::string>& arguments, const RunOptions& options = {}) {
+CommandResult run_vdbmap(const std::vector<std::string>& arguments, const RunOptions& options = {}) {
   return test::run_command(VDBMAP_COMMAND, arguments, options);
 }
 
@@ -53,7 +53,7 @@ class Evaluate : public testing::Test {
 
 TEST(Command, HelpOfEveryCommandEndsWithExamples) {
   for (const Command& command : all_commands()) {
-    const CommandResult result = vdbmap({command.name, "--help"});
+    const CommandResult result = run_vdbmap({command.name, "--help"});
     EXPECT_EQ(result.exit_code, 0);
     const std::size_t examples = result.out.find("\nExamples:\n  vdbmap " + command.name);
     EXPECT_NE(examples, std::string::npos) << result.out;
@@ -62,7 +62,7 @@ TEST(Command, HelpOfEveryCommandEndsWithExamples) {
 }
 
 TEST(Command, HelpListsEveryCommand) {
-  const CommandResult result = vdbmap({"--help"});
+  const CommandResult result = run_vdbmap({"--help"});
   EXPECT_EQ(result.exit_code, 0);
   for (const Command& command : all_commands()) {
     EXPECT_NE(result.out.find("\n  " + command.name + " "), std::string::npos) << result.out;
@@ -70,7 +70,7 @@ TEST(Command, HelpListsEveryCommand) {
 }
 
 TEST(Command, VersionIsOneLine) {
-  const CommandResult result = vdbmap({"--version"});
+  const CommandResult result = run_vdbmap({"--version"});
   EXPECT_EQ(result.exit_code, 0);
   EXPECT_TRUE(result.out.starts_with("vdbmap ")) << result.out;
   EXPECT_EQ(std::count(result.out.begin(), result.out.end(), '\n'), 1);
@@ -94,12 +94,13 @@ TEST(Command, WrongUsageIsToldInOneLine) {
   };
   for (const std::vector<std::string>& arguments : wrong) {
     SCOPED_TRACE(testing::PrintToString(arguments));
-    expect_one_line_error(vdbmap(arguments), ExitCode::kWrongUsage);
+    expect_one_line_error(run_vdbmap(arguments), ExitCode::kWrongUsage);
   }
 }
 
 TEST_F(Evaluate, PrintsATable) {
-  const CommandResult result = vdbmap({"evaluate", poses_file("estimate.txt", 3, 0.25), poses_file("truth.txt", 3)});
+  const CommandResult result =
+      run_vdbmap({"evaluate", poses_file("estimate.txt", 3, 0.25), poses_file("truth.txt", 3)});
   EXPECT_EQ(result.exit_code, 0);
   EXPECT_EQ(result.err, "");
   EXPECT_EQ(result.out,
@@ -120,7 +121,7 @@ TEST_F(Evaluate, PrintsATable) {
 TEST_F(Evaluate, SelectsLinesOfTheTruth) {
   const std::string odd = poses_file("odd.txt", 2, 0, 2);  // at 0 m and 2 m, the truth at 1 m and 3 m
   const CommandResult result =
-      vdbmap({"evaluate", odd, poses_file("truth.txt", 4), "--every", "2", "--offset", "1", "--json"});
+      run_vdbmap({"evaluate", odd, poses_file("truth.txt", 4), "--every", "2", "--offset", "1", "--json"});
   ASSERT_EQ(result.exit_code, 0) << result.err;
   const auto report = nlohmann::json::parse(result.out);
   EXPECT_EQ(report["num_poses"], 2);
@@ -132,7 +133,7 @@ TEST_F(Evaluate, SelectsLinesOfTheTruth) {
 
 TEST_F(Evaluate, WithoutAnyEstimateTheStatisticsAreNull) {
   std::ofstream(folder_ / "lost.txt") << "nan nan nan nan nan nan nan nan nan nan nan nan\n";
-  const CommandResult result = vdbmap({"evaluate", folder_ / "lost.txt", poses_file("truth.txt", 1), "--json"});
+  const CommandResult result = run_vdbmap({"evaluate", folder_ / "lost.txt", poses_file("truth.txt", 1), "--json"});
   ASSERT_EQ(result.exit_code, 0) << result.err;
   const auto report = nlohmann::json::parse(result.out);
   EXPECT_EQ(report["num_missing"], 1);
@@ -142,7 +143,7 @@ TEST_F(Evaluate, WithoutAnyEstimateTheStatisticsAreNull) {
 
 TEST_F(Evaluate, LengthsThatDoNotAgreeAreBadInput) {
   const CommandResult result =
-      vdbmap({"evaluate", poses_file("estimate.txt", 3), poses_file("truth.txt", 4), "--every", "2"});
+      run_vdbmap({"evaluate", poses_file("estimate.txt", 3), poses_file("truth.txt", 4), "--every", "2"});
   expect_one_line_error(result, ExitCode::kBadInput);
   EXPECT_NE(result.err.find("truth.txt: 4 poses"), std::string::npos) << result.err;
   EXPECT_NE(result.err.find("3 are needed"), std::string::npos) << result.err;
@@ -151,18 +152,18 @@ TEST_F(Evaluate, LengthsThatDoNotAgreeAreBadInput) {
 TEST_F(Evaluate, BadAndMissingFilesHaveTheirOwnCodes) {
   const std::string good = poses_file("good.txt", 2);
   std::ofstream(folder_ / "bad.txt") << "1 2 3\n";
-  expect_one_line_error(vdbmap({"evaluate", folder_ / "bad.txt", good}), ExitCode::kBadInput);
-  expect_one_line_error(vdbmap({"evaluate", good, folder_ / "missing.txt"}), ExitCode::kInputOutputFailed);
-  expect_one_line_error(vdbmap({"evaluate", good, folder_.path()}), ExitCode::kInputOutputFailed);
-  expect_one_line_error(vdbmap({"evaluate", good, folder_ / "line\nbreak\x1b"}), ExitCode::kInputOutputFailed);
+  expect_one_line_error(run_vdbmap({"evaluate", folder_ / "bad.txt", good}), ExitCode::kBadInput);
+  expect_one_line_error(run_vdbmap({"evaluate", good, folder_ / "missing.txt"}), ExitCode::kInputOutputFailed);
+  expect_one_line_error(run_vdbmap({"evaluate", good, folder_.path()}), ExitCode::kInputOutputFailed);
+  expect_one_line_error(run_vdbmap({"evaluate", good, folder_ / "line\nbreak\x1b"}), ExitCode::kInputOutputFailed);
 }
 
 TEST_F(Evaluate, AFullDiskOnStdoutIsAnError) {
   const int full = ::open("/dev/full", O_WRONLY | O_CLOEXEC);
   if (full < 0) GTEST_SKIP() << "no /dev/full";
   const std::string poses = poses_file("poses.txt", 2);
-  expect_one_line_error(vdbmap({"evaluate", poses, poses}, {.out_descriptor = full}), ExitCode::kInputOutputFailed);
-  expect_one_line_error(vdbmap({"--help"}, {.out_descriptor = full}), ExitCode::kInputOutputFailed);
+  expect_one_line_error(run_vdbmap({"evaluate", poses, poses}, {.out_descriptor = full}), ExitCode::kInputOutputFailed);
+  expect_one_line_error(run_vdbmap({"--help"}, {.out_descriptor = full}), ExitCode::kInputOutputFailed);
   ::close(full);
 }
 
@@ -171,7 +172,8 @@ TEST_F(Evaluate, APipeThatNobodyReadsIsAnError) {
   ASSERT_EQ(::pipe2(ends.data(), O_CLOEXEC), 0);
   ::close(ends[0]);
   const std::string poses = poses_file("poses.txt", 2);
-  expect_one_line_error(vdbmap({"evaluate", poses, poses}, {.out_descriptor = ends[1]}), ExitCode::kInputOutputFailed);
+  expect_one_line_error(run_vdbmap({"evaluate", poses, poses}, {.out_descriptor = ends[1]}),
+                        ExitCode::kInputOutputFailed);
   ::close(ends[1]);
 }
 
@@ -189,7 +191,7 @@ TEST_F(Evaluate, SignalsEndItWithTheirCode) {
       ::kill(process, signal);
       ::close(writer);
     };
-    const CommandResult result = vdbmap({"evaluate", fifo, fifo}, {.while_running = interrupt});
+    const CommandResult result = run_vdbmap({"evaluate", fifo, fifo}, {.while_running = interrupt});
     EXPECT_EQ(result.exit_code, 128 + signal) << result.err;
   }
 }

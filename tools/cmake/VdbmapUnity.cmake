@@ -1,13 +1,7 @@
 # Compiles the sources of a target in batches of one room each, where CMAKE_UNITY_BUILD asks for batches: a new file then changes the
 # batches of its room only, and what is alike in two rooms' anonymous namespaces does not clash. A room is a folder of a library
-# (vdbmap/io, registration/fine) with all that lies in it, or the same of its tests. Large batches share what they instantiate; a
-# target whose files have names in common says how many it takes at MOST.
+# (vdbmap/io, registration/fine) with all that lies in it, or the same of its tests. Large batches share what they instantiate.
 function(vdbmap_batch_by_room target)
-  cmake_parse_arguments(PARSE_ARGV 1 batch "" "MOST" "")
-  set(batch_size ${CMAKE_UNITY_BUILD_BATCH_SIZE})
-  if(batch_MOST AND batch_MOST LESS batch_size)
-    set(batch_size ${batch_MOST})
-  endif()
   if(NOT CMAKE_UNITY_BUILD)
     return()
   endif()
@@ -21,7 +15,7 @@ function(vdbmap_batch_by_room target)
     if(NOT DEFINED count_${room})
       set(count_${room} 0)
     endif()
-    math(EXPR batch "${count_${room}} / ${batch_size}")
+    math(EXPR batch "${count_${room}} / ${CMAKE_UNITY_BUILD_BATCH_SIZE}")
     math(EXPR count_${room} "${count_${room}} + 1")
     set_source_files_properties(${source} PROPERTIES UNITY_GROUP ${room}_${batch})
   endforeach()

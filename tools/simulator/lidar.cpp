@@ -24,8 +24,8 @@ float velodyne_intensity(double reflectivity) {
   return static_cast<float>(std::clamp(std::round(value), 0.0, 255.0));
 }
 
-void append_point(Survey& scan, const SceneView& view, const Eigen::Vector3d& direction, const Echo& echo, double time,
-                  std::uint16_t ring) {
+void append_echo(Survey& scan, const SceneView& view, const Eigen::Vector3d& direction, const Echo& echo, double time,
+                 std::uint16_t ring) {
   // In floats, as a driver gives them; so a PCD file takes 32 bits a coordinate.
   scan.cloud.positions.emplace_back((echo.range * direction).cast<float>().cast<double>());
   scan.cloud.intensities.push_back(velodyne_intensity(echo.reflectivity));
@@ -171,8 +171,8 @@ Survey scan_turn(const SceneView& view, const Drive& drive, const LidarModel& li
     if (!turn[i]) continue;
     const Laser& laser = lidar.lasers[i % lidar.lasers.size()];
     const double since_start = lidar.firing_time(static_cast<int>(i / lidar.lasers.size()), laser);
-    append_point(scan, view, lidar.direction(laser, since_start), *turn[i],
-                 start_time + since_start + lidar.clock_error, laser.ring);
+    append_echo(scan, view, lidar.direction(laser, since_start), *turn[i], start_time + since_start + lidar.clock_error,
+                laser.ring);
   }
   return scan;
 }

@@ -22,7 +22,7 @@ constexpr double kBlockRise = 0.08;     // [m] of gardens over the hills, about 
 constexpr double kSpecialShare = 0.35;  // of the rows that a park, car park, hall or open ground follows
 
 // Stations of crossings along one direction.
-std::vector<double> make_stations(int num_blocks, Random& random) {
+std::vector<double> stations_of_blocks(int num_blocks, Random& random) {
   std::vector<double> stations = {0};
   for (int i = 0; i < num_blocks; ++i) stations.push_back(stations.back() + random.uniform(75, 100));
   return stations;
@@ -170,8 +170,8 @@ void add_crossing(World& world, Mesh& mesh, const Quarter& quarter, const Crossi
 
 Quarter make_quarter(const StreetOptions& options) {
   Random random(hash(options.seed, 1));
-  const std::vector<double> xs = make_stations(options.quarter_columns, random);
-  const std::vector<double> ys = make_stations(options.quarter_rows, random);
+  const std::vector<double> xs = stations_of_blocks(options.quarter_columns, random);
+  const std::vector<double> ys = stations_of_blocks(options.quarter_rows, random);
   StreetAxis axis = make_axis(random);
   axis.bend_amplitude = 0;
   axis.hills = make_hills(random);

@@ -19,8 +19,6 @@
 namespace vdbmap::simulator {
 namespace {
 
-using Json = nlohmann::json;
-
 constexpr double kDegree = std::numbers::pi / 180;
 constexpr std::size_t kMostBeams = 256;
 constexpr const char* kMapper = "mapper";
@@ -31,7 +29,7 @@ constexpr auto kKeys =
 // One sensor of the file; every message names it.
 class SensorReader {
  public:
-  SensorReader(const std::filesystem::path& path, const Json& json, std::size_t index)
+  SensorReader(const std::filesystem::path& path, const nlohmann::json& json, std::size_t index)
       : path_(path), json_(json), where_(fmt::format("sensor {}", index)) {}
 
   SensorUse read() {
@@ -82,7 +80,7 @@ class SensorReader {
     std::vector<double> elevations;
     if (json_.contains("elevations_deg")) {
       if (!json_["elevations_deg"].is_array()) fail("wants an array \"elevations_deg\"");
-      for (const Json& value : json_["elevations_deg"]) {
+      for (const nlohmann::json& value : json_["elevations_deg"]) {
         if (!value.is_number() || !(std::abs(value.get<double>()) <= 90))
           fail("has an elevation that is none from -90 to 90");
         elevations.push_back(value);
@@ -125,7 +123,7 @@ class SensorReader {
   }
 
   const std::filesystem::path& path_;
-  const Json& json_;
+  const nlohmann::json& json_;
   std::string where_;
 };
 
@@ -134,7 +132,7 @@ class SensorReader {
 std::vector<SensorUse> read_sensors(const std::filesystem::path& path) {
   std::ifstream file(path);
   if (!file) throw IoError::system(path, "cannot open", errno);
-  const Json json = Json::parse(file, nullptr, false);
+  const nlohmann::json json = nlohmann::json::parse(file, nullptr, false);
   if (!json.is_array() || json.empty()) throw IoError::malformed(path, "is no JSON array of sensors");
   std::vector<SensorUse> uses;
   for (std::size_t i = 0; i < json.size(); ++i) uses.push_back(SensorReader(path, json[i], i).read());

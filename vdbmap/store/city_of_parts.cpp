@@ -61,10 +61,10 @@ CityLayout like_layout(const std::optional<City>& base, const Eigen::Vector3d& a
 std::vector<KeptSource> take_removed(std::vector<KeptSource>& sources, const std::vector<MapSource>& removed) {
   std::set<std::string> hashes;
   for (const MapSource& source : removed) hashes.insert(source.hash);
-  const auto gone = std::ranges::stable_partition(
-      sources, [&](const KeptSource& source) { return !hashes.contains(source.source.hash); });
-  std::vector<KeptSource> taken(std::make_move_iterator(gone.begin()), std::make_move_iterator(gone.end()));
-  sources.erase(gone.begin(), gone.end());
+  const auto gone = std::stable_partition(
+      sources.begin(), sources.end(), [&](const KeptSource& source) { return !hashes.contains(source.source.hash); });
+  std::vector<KeptSource> taken(std::make_move_iterator(gone), std::make_move_iterator(sources.end()));
+  sources.erase(gone, sources.end());
   return taken;
 }
 

@@ -13,7 +13,7 @@
 namespace vdbmap::registration {
 namespace {
 
-const VoxelMap& room_map() {
+const VoxelMap& map_of_room() {
   static const VoxelMap map = [] {
     BuildOptions options;
     options.anchor = Eigen::Vector3d::Zero();
@@ -31,7 +31,7 @@ std::vector<Eigen::Vector3d> room_scan() {
 }
 
 MatchingStage fine_stage(std::span<const Eigen::Vector3d> points) {
-  return {&room_map().finest(), points, {.search_voxels = 1}, {0.2, 0.1, 0.6}, 20};
+  return {&map_of_room().finest(), points, {.search_voxels = 1}, {0.2, 0.1, 0.6}, 20};
 }
 
 Eigen::Isometry3d near_guess() {

@@ -47,12 +47,12 @@ TEST(Shuffle, TakesTheBiasOutOfTheFirstPointsOfCubes) {
   const test::Scene floor = {{{-25, -25, 0}, {50, 0, 0}, {0, 50, 0}}};
   double in_order = 0;
   double in_shuffled_order = 0;
-  constexpr int kScans = 10;
-  for (unsigned seed = 0; seed < kScans; ++seed) {
+  constexpr int kSeeds = 10;
+  for (unsigned seed = 0; seed < kSeeds; ++seed) {
     const PointCloud scan = test::scan_scene(floor, Eigen::Isometry3d(Eigen::Translation3d(0, 0, height)),
                                              {.num_azimuths = 450, .range_noise = 0.03, .seed = seed});
-    in_order += mean_height(scan.positions, height) / kScans;
-    in_shuffled_order += mean_height(shuffled(scan.positions), height) / kScans;
+    in_order += mean_height(scan.positions, height) / kSeeds;
+    in_shuffled_order += mean_height(shuffled(scan.positions), height) / kSeeds;
   }
   // Some 8000 points in all, each 3 mm up or down: 0.04 mm. A mean below is what would push the scan up.
   EXPECT_LT(in_order, -3e-4);

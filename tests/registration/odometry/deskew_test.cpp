@@ -15,7 +15,7 @@ namespace {
 const Eigen::AlignedBox3d kSurroundings(Eigen::Vector3d(-50, -50, -3), Eigen::Vector3d(50, 50, 9));
 constexpr double kEpoch = 1.7e9;  // [s] times as GPS and Unix clocks give them
 
-ScanMotion motion(const Eigen::Vector3d& turn, const Eigen::Vector3d& velocity) {
+ScanMotion scan_motion(const Eigen::Vector3d& turn, const Eigen::Vector3d& velocity) {
   ScanMotion motion{kEpoch, Vector6d::Zero()};
   motion.twist << turn, velocity;
   return motion;
@@ -23,8 +23,8 @@ ScanMotion motion(const Eigen::Vector3d& turn, const Eigen::Vector3d& velocity) 
 
 TEST(Deskew, MovesEveryPointByTheMotionUntilItsTime) {
   const std::vector<Eigen::Vector3d> points = test::random_points(3000, kSurroundings, 1);
-  for (const ScanMotion& sensor : {motion({0.3, -0.2, 1.5}, {15, 1, -0.5}), motion({0, 0, 0}, {15, 1, -0.5}),
-                                   motion({0, 0, 1e-8}, {15, 0, 0}), motion({0, 2, 0}, {0, 0, 0})}) {
+  for (const ScanMotion& sensor : {scan_motion({0.3, -0.2, 1.5}, {15, 1, -0.5}), scan_motion({0, 0, 0}, {15, 1, -0.5}),
+                                   scan_motion({0, 0, 1e-8}, {15, 0, 0}), scan_motion({0, 2, 0}, {0, 0, 0})}) {
     std::vector<double> times;
     for (std::size_t i = 0; i < points.size(); ++i) times.push_back(kEpoch + 0.1 * static_cast<double>(i) / 3000);
     const std::vector<Eigen::Vector3d> deskewed = deskew_points(points, times, sensor);
@@ -37,7 +37,7 @@ TEST(Deskew, MovesEveryPointByTheMotionUntilItsTime) {
 
 TEST(Deskew, OfAMovingScannersScanLiesOnTheScene) {
   const Eigen::Vector3d start(-5, 0.3, 1.8);
-  const ScanMotion sensor = motion({0.02, -0.03, 0.6}, {12, 0.4, 0.1});
+  const ScanMotion sensor = scan_motion({0.02, -0.03, 0.6}, {12, 0.4, 0.1});
   const auto map_from_sensor_at = [&](double time) {
     return Eigen::Isometry3d(Eigen::Translation3d(start) * motion_of_twist((time - kEpoch) * sensor.twist));
   };
@@ -54,15 +54,15 @@ TEST(Deskew, OfAMovingScannersScanLiesOnTheScene) {
 TEST(Deskew, WithoutTimesOrMotionTheScanStaysAsItIs) {
   PointCloud scan;
   scan.positions = test::random_points(10, kSurroundings, 1);
-  EXPECT_EQ(deskew(scan, motion({0, 0, 1}, {1, 0, 0})).positions, scan.positions);
+  EXPECT_EQ(deskew(scan, scan_motion({0, 0, 1}, {1, 0, 0})).positions, scan.positions);
   scan.times.assign(10, kEpoch + 0.05);
-  EXPECT_EQ(deskew(scan, motion({0, 0, 0}, {0, 0, 0})).positions, scan.positions);
+  EXPECT_EQ(deskew(scan, scan_motion({0, 0, 0}, {0, 0, 0})).positions, scan.positions);
 }
 
 TEST(Deskew, IsTheSameForAnyNumberOfThreads) {
   const std::vector<Eigen::Vector3d> points = test::random_points(20'000, kSurroundings, 1);
   const std::vector<double> times(points.size(), kEpoch + 0.07);
-  const ScanMotion sensor = motion({0.3, -0.2, 1.5}, {15, 1, -0.5});
+  const ScanMotion sensor = scan_motion({0.3, -0.2, 1.5}, {15, 1, -0.5});
   const auto deskewed = [&] { return deskew_points(points, times, sensor); };
   EXPECT_EQ(test::on_threads(1, deskewed), test::on_threads(4, deskewed));
 }

@@ -23,7 +23,7 @@ struct ParkedStreet {
   }
 };
 
-std::array<Eigen::Vector2d, 4> corners(const ParkedVehicle& vehicle) {
+std::array<Eigen::Vector2d, 4> corners_of(const ParkedVehicle& vehicle) {
   std::array<Eigen::Vector2d, 4> corners;
   for (int i = 0; i < 4; ++i) {
     const Eigen::Vector3d corner((i & 1 ? 0.5 : -0.5) * vehicle.shape.length,
@@ -39,7 +39,7 @@ bool are_parted_by(const ParkedVehicle& a, const ParkedVehicle& b) {
     const Eigen::Vector2d direction = a.scene_from_vehicle.linear().col(axis).head<2>();
     const double half = (axis == 0 ? a.shape.length : a.shape.width) / 2;
     std::array<double, 4> places;
-    std::ranges::transform(corners(b), places.begin(), [&](const Eigen::Vector2d& corner) {
+    std::ranges::transform(corners_of(b), places.begin(), [&](const Eigen::Vector2d& corner) {
       return direction.dot(corner - a.scene_from_vehicle.translation().head<2>());
     });
     if (*std::ranges::min_element(places) > half || *std::ranges::max_element(places) < -half) return true;

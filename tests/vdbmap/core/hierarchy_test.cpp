@@ -18,7 +18,7 @@ namespace {
 // Across leaves and blocks, on both sides of every axis.
 const Eigen::AlignedBox3d kTwoBlocks(Eigen::Vector3d(-13.1, -2.2, -1.1), Eigen::Vector3d(3.3, 2.4, 1.2));
 
-VoxelMap map_of(const PointCloud& cloud, const std::vector<double>& voxel_sizes) {
+VoxelMap map_with_levels(const PointCloud& cloud, const std::vector<double>& voxel_sizes) {
   BuildOptions options;
   options.voxel_sizes = voxel_sizes;
   options.anchor = Eigen::Vector3d::Zero();
@@ -60,14 +60,14 @@ class HierarchyStep : public testing::TestWithParam<Step> {};
 TEST_P(HierarchyStep, ALevelHasTheMomentsOfItsPoints) {
   const auto [fine_size, coarse_size] = GetParam();
   const PointCloud cloud = test::random_cloud(30'000, kTwoBlocks, 1);
-  expect_moments_of_points(map_of(cloud, {fine_size, coarse_size}).coarsest(), cloud, fine_size);
+  expect_moments_of_points(map_with_levels(cloud, {fine_size, coarse_size}).coarsest(), cloud, fine_size);
 }
 
 TEST_P(HierarchyStep, ALevelIsTheOneBuiltFromThePointsDirectly) {
   const auto [fine_size, coarse_size] = GetParam();
   const PointCloud cloud = test::random_cloud(30'000, kTwoBlocks, 2);
-  const VoxelMap two_levels = map_of(cloud, {fine_size, coarse_size});
-  const VoxelMap one_level = map_of(cloud, {coarse_size});
+  const VoxelMap two_levels = map_with_levels(cloud, {fine_size, coarse_size});
+  const VoxelMap one_level = map_with_levels(cloud, {coarse_size});
   const VoxelLevel& merged = two_levels.coarsest();
   const VoxelLevel& direct = one_level.finest();
   ASSERT_TRUE(test::same_voxels(merged, direct));
@@ -83,7 +83,7 @@ TEST_P(HierarchyStep, ALevelIsTheOneBuiltFromThePointsDirectly) {
 
 TEST_P(HierarchyStep, CountsAddUp) {
   const auto [fine_size, coarse_size] = GetParam();
-  const VoxelMap map = map_of(test::random_cloud(30'000, kTwoBlocks, 3), {fine_size, coarse_size});
+  const VoxelMap map = map_with_levels(test::random_cloud(30'000, kTwoBlocks, 3), {fine_size, coarse_size});
   EXPECT_EQ(num_points(map.finest()), 30'000U);
   EXPECT_EQ(num_points(map.coarsest()), 30'000U);
 }
@@ -94,7 +94,7 @@ INSTANTIATE_TEST_SUITE_P(Factors, HierarchyStep,
 
 TEST(Hierarchy, ThreeLevelsAreEachAMergeOfThePoints) {
   const PointCloud cloud = test::random_cloud(30'000, kTwoBlocks, 4);
-  const VoxelMap map = map_of(cloud, {0.1, 0.2, 1});
+  const VoxelMap map = map_with_levels(cloud, {0.1, 0.2, 1});
   ASSERT_EQ(map.levels.size(), 3U);
   EXPECT_DOUBLE_EQ(map.levels[1].voxel_size(), 0.2);
   EXPECT_DOUBLE_EQ(map.levels[2].voxel_size(), 1.0);
@@ -104,7 +104,7 @@ TEST(Hierarchy, ThreeLevelsAreEachAMergeOfThePoints) {
 
 TEST(Hierarchy, ALevelOfOnlyOneVoxelHoldsAll) {
   const PointCloud cloud = test::random_cloud(5000, {Eigen::Vector3d(1, 2, 3), Eigen::Vector3d(7, 7, 7)}, 5);
-  const VoxelMap map = map_of(cloud, {0.1, 8});
+  const VoxelMap map = map_with_levels(cloud, {0.1, 8});
   ASSERT_EQ(map.coarsest().size(), 1U);
   EXPECT_EQ(map.coarsest().records()[0].count, 5000U);
   expect_moments_of_points(map.coarsest(), cloud, 0.1);
@@ -112,7 +112,7 @@ TEST(Hierarchy, ALevelOfOnlyOneVoxelHoldsAll) {
 
 TEST(Hierarchy, EpochsOfAParentSpanThoseOfItsChildren) {
   const VoxelMap source =
-      map_of(test::random_cloud(200, {Eigen::Vector3d(0, 0, 0), Eigen::Vector3d(1, 1, 1)}, 6), {0.1});
+      map_with_levels(test::random_cloud(200, {Eigen::Vector3d(0, 0, 0), Eigen::Vector3d(1, 1, 1)}, 6), {0.1});
   VoxelChannels channels;
   for (std::size_t i = 0; i < source.finest().size(); ++i) {
     channels.first_epochs.push_back(static_cast<std::int32_t>(i) - 5);
@@ -130,7 +130,7 @@ TEST(Hierarchy, EpochsOfAParentSpanThoseOfItsChildren) {
 
 TEST(Hierarchy, DoesNotDependOnTheNumberOfThreads) {
   // Over a thousand leaves, so that parents are gathered by several tasks.
-  const VoxelMap map = map_of(test::random_cloud(60'000, kTwoBlocks, 7), {0.05});
+  const VoxelMap map = map_with_levels(test::random_cloud(60'000, kTwoBlocks, 7), {0.05});
   ASSERT_GT(map.finest().leaves().size(), 1000U);
   const auto coarse_map = [&] {
     VoxelMap coarse;

@@ -31,7 +31,7 @@ PointCloud cloud_of(std::vector<Eigen::Vector3d> positions) {
   return cloud;
 }
 
-VoxelMap map_of(std::vector<Eigen::Vector3d> positions) {
+VoxelMap map_of_points(std::vector<Eigen::Vector3d> positions) {
   return build_map(cloud_of(std::move(positions)), test::anchored({0, 0, 0}));
 }
 
@@ -168,7 +168,7 @@ INSTANTIATE_TEST_SUITE_P(Threads, MapBuilderThreads, testing::Values(1, 2, 4));
 TEST(MapBuilder, PointsOnABorderBelongToTheUpperVoxel) {
   std::vector<Eigen::Vector3d> corners;
   for (int i = -20; i < 20; ++i) corners.emplace_back(i / 10.0, -i / 10.0, 2 * i / 10.0);
-  const VoxelMap map = map_of(corners);
+  const VoxelMap map = map_of_points(corners);
   ASSERT_EQ(map.finest().size(), corners.size());
   const VoxelFinder finder(map.finest());
   for (int i = -20; i < 20; ++i) {
@@ -191,7 +191,7 @@ TEST(MapBuilder, DecimalUtmCoordinatesOnABorderBelongToTheUpperVoxel) {
 TEST(MapBuilder, PointsAHairBelowABorderStayThere) {
   // -1e-20 is in voxel -1, but 1 - 1e-20 is 1 in doubles: the upper end of the voxel, not the lower.
   for (const double hair : {1e-20, 1e-17, 1e-12, 1e-8}) {
-    const VoxelMap map = map_of({{-hair, 0.05, 0.05}});
+    const VoxelMap map = map_of_points({{-hair, 0.05, 0.05}});
     ASSERT_EQ(map.finest().size(), 1U);
     const VoxelRecord* record = VoxelFinder(map.finest()).find({-1, 0, 0});
     ASSERT_NE(record, nullptr);
@@ -200,7 +200,7 @@ TEST(MapBuilder, PointsAHairBelowABorderStayThere) {
 }
 
 TEST(MapBuilder, OnePointHasNoCovarianceAndNoPlane) {
-  const VoxelMap map = map_of({{-0.234, 12.3, 4.56}});
+  const VoxelMap map = map_of_points({{-0.234, 12.3, 4.56}});
   ASSERT_EQ(map.levels.size(), 2U);
   for (const VoxelLevel& level : map.levels) {
     ASSERT_EQ(level.size(), 1U);
@@ -211,7 +211,7 @@ TEST(MapBuilder, OnePointHasNoCovarianceAndNoPlane) {
 }
 
 TEST(MapBuilder, RepeatedPointsHaveNoCovariance) {
-  const VoxelMap map = map_of(std::vector<Eigen::Vector3d>(1000, Eigen::Vector3d(-7.777, 0.123, 99.99)));
+  const VoxelMap map = map_of_points(std::vector<Eigen::Vector3d>(1000, Eigen::Vector3d(-7.777, 0.123, 99.99)));
   ASSERT_EQ(map.finest().size(), 1U);
   EXPECT_EQ(map.finest().records()[0].count, 1000U);
   EXPECT_EQ(covariance_of(map.finest().records()[0]), Eigen::Matrix3d::Zero());
@@ -258,13 +258,13 @@ TEST(MapBuilder, AnchorsMoveVoxelsByWholeTiles) {
 
 TEST(MapBuilder, PointsBeyondTheRangeOfIdsAreRefusedByName) {
   const double limit = kIndexLimit * kSize;  // 104,857.6 m
-  EXPECT_EQ(map_of({{limit - 0.05, -limit, 0}}).finest().size(), 1U);
-  EXPECT_THROW(map_of({{limit, 0, 0}}), std::out_of_range);
-  EXPECT_THROW(map_of({{0, -limit - 0.05, 0}}), std::out_of_range);
-  EXPECT_THROW(map_of({{0, 0, std::numeric_limits<double>::quiet_NaN()}}), std::out_of_range);
-  EXPECT_THROW(map_of({{0, 0, 0}, {0, std::numeric_limits<double>::infinity(), 0}}), std::out_of_range);
+  EXPECT_EQ(map_of_points({{limit - 0.05, -limit, 0}}).finest().size(), 1U);
+  EXPECT_THROW(map_of_points({{limit, 0, 0}}), std::out_of_range);
+  EXPECT_THROW(map_of_points({{0, -limit - 0.05, 0}}), std::out_of_range);
+  EXPECT_THROW(map_of_points({{0, 0, std::numeric_limits<double>::quiet_NaN()}}), std::out_of_range);
+  EXPECT_THROW(map_of_points({{0, 0, 0}, {0, std::numeric_limits<double>::infinity(), 0}}), std::out_of_range);
   try {
-    map_of({{0, 0, 0}, {1, 234567.5, 2}});
+    map_of_points({{0, 0, 0}, {1, 234567.5, 2}});
     FAIL() << "nothing was thrown";
   } catch (const std::out_of_range& error) {
     const std::string message = error.what();
@@ -379,7 +379,7 @@ TEST(MapBuilder, IntensitiesThatAreDamageDoNotCount) {
 }
 
 TEST(MapBuilder, AttributesNobodyGaveAreAbsent) {
-  const VoxelMap map = map_of({{1, 2, 3}});
+  const VoxelMap map = map_of_points({{1, 2, 3}});
   EXPECT_FALSE(map.has_color);
   for (const VoxelLevel& level : map.levels) {
     EXPECT_TRUE(level.channels().intensities.empty());

@@ -28,7 +28,7 @@ double angle_between_lines(const Eigen::Vector3d& a, const Eigen::Vector3d& b) {
   return std::atan2(a.cross(b).norm(), std::abs(a.dot(b)));
 }
 
-std::vector<std::size_t> points_around(const test::PointsByVoxel& voxels, const VoxelIndex& center) {
+std::vector<std::size_t> indices_around(const test::PointsByVoxel& voxels, const VoxelIndex& center) {
   std::vector<std::size_t> numbers;
   for (std::int32_t x = -1; x <= 1; ++x) {
     for (std::int32_t y = -1; y <= 1; ++y) {
@@ -42,12 +42,12 @@ std::vector<std::size_t> points_around(const test::PointsByVoxel& voxels, const 
 }
 
 // Every normal against the eigenvectors of all points in the 27 voxels.
-void expect_brute_force(const VoxelLevel& level, const PointCloud& cloud) {
+void expect_normals_of_brute_force(const VoxelLevel& level, const PointCloud& cloud) {
   const test::PointsByVoxel voxels = test::points_by_voxel(cloud.positions, level.voxel_size());
   std::size_t num_compared = 0;
   for_each_voxel(level, [&](const VoxelIndex& voxel, std::size_t number) {
     const VoxelRecord& record = level.records()[number];
-    const std::vector<std::size_t> numbers = points_around(voxels, voxel);
+    const std::vector<std::size_t> numbers = indices_around(voxels, voxel);
     if (numbers.size() < 3) {
       EXPECT_EQ(record.planarity_code, 0);
       return;
@@ -69,7 +69,7 @@ TEST(Normals, AreThoseOfAllPointsInTwentySevenVoxels) {
   // Thin enough for gaps, over many leaves, on both sides of every axis.
   PointCloud cloud;
   cloud.positions = test::random_points(12'000, {Eigen::Vector3d(-2.3, -1.9, -0.4), Eigen::Vector3d(1.7, 2.1, 0.5)}, 1);
-  expect_brute_force(map_of(cloud).finest(), cloud);
+  expect_normals_of_brute_force(map_of(cloud).finest(), cloud);
 }
 
 TEST(Normals, AreThoseOfAllPointsAcrossRootNodesToo) {
@@ -77,12 +77,12 @@ TEST(Normals, AreThoseOfAllPointsAcrossRootNodesToo) {
   const Eigen::Vector3d corner(409.6, -409.6, 0);  // where eight of OpenVDB's largest nodes meet, at 4096 voxels
   const Eigen::Vector3d half_edge = Eigen::Vector3d::Constant(0.6);
   cloud.positions = test::random_points(3000, {corner - half_edge, corner + half_edge}, 2);
-  expect_brute_force(map_of(cloud).finest(), cloud);
+  expect_normals_of_brute_force(map_of(cloud).finest(), cloud);
 }
 
 TEST(Normals, OfTheCoarserLevelAreThoseOfAllPointsToo) {
   const PointCloud cloud = test::sample_scene(test::room(), 20, 3);
-  expect_brute_force(map_of(cloud, {0.1, 1}).coarsest(), cloud);
+  expect_normals_of_brute_force(map_of(cloud, {0.1, 1}).coarsest(), cloud);
 }
 
 class NormalsOfPlanes : public testing::TestWithParam<Eigen::Vector3d> {};

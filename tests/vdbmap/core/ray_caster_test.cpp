@@ -15,7 +15,7 @@
 namespace vdbmap {
 namespace {
 
-constexpr double kSize = 0.1;  // [m]
+constexpr double kEdge = 0.1;  // [m]
 
 // Where a ray enters a voxel, by three pairs of planes; infinity where it misses or begins inside.
 struct BoxEntry {
@@ -24,17 +24,17 @@ struct BoxEntry {
 };
 
 BoxEntry enter(const Ray& ray, const VoxelIndex& voxel) {
-  const Eigen::Vector3d corner = corner_of_voxel(voxel, kSize);
+  const Eigen::Vector3d corner = corner_of_voxel(voxel, kEdge);
   double begin = -std::numeric_limits<double>::infinity();
   double end = std::numeric_limits<double>::infinity();
   BoxEntry entry;
   for (int axis = 0; axis < 3; ++axis) {
     if (ray.direction[axis] == 0) {
-      if (ray.origin[axis] < corner[axis] || ray.origin[axis] >= corner[axis] + kSize) return {};
+      if (ray.origin[axis] < corner[axis] || ray.origin[axis] >= corner[axis] + kEdge) return {};
       continue;
     }
     const double a = (corner[axis] - ray.origin[axis]) / ray.direction[axis];
-    const double b = (corner[axis] + kSize - ray.origin[axis]) / ray.direction[axis];
+    const double b = (corner[axis] + kEdge - ray.origin[axis]) / ray.direction[axis];
     if (std::min(a, b) > begin) {
       begin = std::min(a, b);
       entry.face = static_cast<VoxelFace>(2 * axis + (ray.direction[axis] > 0 ? 0 : 1));
@@ -134,7 +134,7 @@ TEST(RayCaster, FindsTheRecordOfTheVoxel) {
   const RayCaster caster(map.finest());
   const VoxelFinder finder(map.finest());
   for (const VoxelIndex& voxel : voxels) {
-    const Eigen::Vector3d center = center_of_voxel(voxel, kSize);
+    const Eigen::Vector3d center = center_of_voxel(voxel, kEdge);
     const auto hit = caster.first_hit({center + Eigen::Vector3d(0, 0, 0.06), {0, 0, -1}});
     ASSERT_TRUE(hit.has_value());
     EXPECT_EQ(hit->voxel, voxel);
@@ -143,7 +143,7 @@ TEST(RayCaster, FindsTheRecordOfTheVoxel) {
 }
 
 TEST(RayCaster, NothingIsHitInAnEmptyLevelOrByARayWithoutDirection) {
-  const VoxelLevel empty(kSize, {}, {});
+  const VoxelLevel empty(kEdge, {}, {});
   EXPECT_FALSE(RayCaster(empty).first_hit({{0, 0, 0}, {1, 0, 0}}).has_value());
   const VoxelMap map = test::map_of_voxels({{0, 0, 0}, {3, 3, 3}});
   const RayCaster caster(map.finest());

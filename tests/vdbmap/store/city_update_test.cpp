@@ -169,17 +169,17 @@ TEST_F(CityUpdate, IsThatOfTheMapInOnePieceForAnyWindowAndNumberOfThreads) {
   ASSERT_GT(expected.counts.gone, 100U);
   ASSERT_GT(expected.counts.moved, 100U);
   std::map<std::string, std::string> first;
-  for (const auto& [memory, threads] :
+  for (const auto& way :
        {std::pair<std::size_t, int>{std::size_t{2} << 30, 2}, {std::size_t{1} << 20, 1}, {std::size_t{100} << 20, 4}}) {
     std::filesystem::remove_all(path());
     save_before();
-    const UpdatedCity updated = test::on_threads(threads, [&] { return update(options(memory)); });
+    const UpdatedCity updated = test::on_threads(way.second, [&] { return update(options(way.first)); });
     expect_same(load_seen_map_or_city(path()), expected.map, expected.visibility);
     EXPECT_EQ(changes_of(updated.counts), changes_of(expected.counts));
     EXPECT_EQ(updated.counts.num_points, expected.counts.num_points);
     EXPECT_EQ(updated.counts.num_moved_points, expected.counts.num_moved_points);
     if (first.empty()) first = test::files_of_city(path());
-    EXPECT_TRUE(test::files_of_city(path()) == first) << memory;
+    EXPECT_TRUE(test::files_of_city(path()) == first) << way.first;
   }
   EXPECT_TRUE(check_city(path()).problems.empty());
 }
