@@ -29,12 +29,6 @@ std::vector<std::string> attributes_of_city(const CityLayout& layout) {
   return names;
 }
 
-// The date of the epoch that the city is in.
-std::string date_of(const CityManifest& manifest) {
-  const auto epoch = std::ranges::find(manifest.epochs, manifest.epoch, &MapEpoch::number);
-  return epoch == manifest.epochs.end() ? "" : epoch->date;
-}
-
 std::string date_text(const CityManifest& manifest) {
   const std::string date = date_of(manifest);
   return date.empty() ? "" : ", " + printable(date);

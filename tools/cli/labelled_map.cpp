@@ -44,11 +44,7 @@ LoadedMap load_seen_labelled_map(const std::filesystem::path& path,
 }
 
 std::string date_of_map(const std::filesystem::path& path) {
-  if (is_city(path)) {
-    const CityManifest manifest = open_city(path).manifest;
-    const auto epoch = std::ranges::find(manifest.epochs, manifest.epoch, &MapEpoch::number);
-    return epoch == manifest.epochs.end() ? "" : epoch->date;
-  }
+  if (is_city(path)) return date_of(open_city(path).manifest);
   const MapHistory history = load_history(path);
   return history.epochs.empty() ? "" : history.epochs.back().date;
 }

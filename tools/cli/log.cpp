@@ -49,8 +49,7 @@ struct LogRow {
 
 LogRow row_of(std::int32_t epoch, const CityManifest& manifest, std::set<std::string>& known_tiles) {
   LogRow row{epoch, manifest};
-  const auto told = std::ranges::find(manifest.epochs, epoch, &MapEpoch::number);
-  if (told != manifest.epochs.end()) row.told = *told;
+  if (const MapEpoch* told = find_epoch(manifest, epoch)) row.told = *told;
   for (const CityTile& tile : manifest.tiles) {
     row.num_new_tiles += known_tiles.insert(tile_name(tile.id) + tile.hash).second ? 1 : 0;
   }

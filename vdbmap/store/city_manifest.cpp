@@ -250,6 +250,16 @@ const CityTile* find_tile(const CityManifest& manifest, const TileId& id) {
   return found == manifest.tiles.end() || found->id != id ? nullptr : &*found;
 }
 
+const MapEpoch* find_epoch(const CityManifest& manifest, std::int32_t number) {
+  const auto found = std::ranges::lower_bound(manifest.epochs, number, {}, &MapEpoch::number);
+  return found == manifest.epochs.end() || found->number != number ? nullptr : &*found;
+}
+
+std::string date_of(const CityManifest& manifest) {
+  const MapEpoch* epoch = find_epoch(manifest, manifest.epoch);
+  return epoch ? epoch->date : "";
+}
+
 const CityPart* find_part(const CityManifest& manifest, const std::string& source) {
   const auto found = std::ranges::lower_bound(manifest.parts, source, {}, &CityPart::source);
   return found == manifest.parts.end() || found->source != source ? nullptr : &*found;

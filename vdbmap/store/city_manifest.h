@@ -94,6 +94,12 @@ bool has_rays(const CityManifest& manifest);
 /// The tile of that id, or nullptr.
 const CityTile* find_tile(const CityManifest& manifest, const TileId& id);
 
+/// What is known of that epoch, or nullptr.
+const MapEpoch* find_epoch(const CityManifest& manifest, std::int32_t number);
+
+/// The date of the epoch that the city is in; empty where it is not known.
+std::string date_of(const CityManifest& manifest);
+
 /// The part of the source of that hash, or nullptr.
 const CityPart* find_part(const CityManifest& manifest, const std::string& source);
 

@@ -6,7 +6,6 @@
 #include <utility>
 
 #include "vdbmap/change/voxel_fates.h"
-#include "vdbmap/core/error.h"
 #include "vdbmap/core/map_tiles.h"
 #include "vdbmap/core/parallel_tasks.h"
 #include "vdbmap/store/city_window.h"
@@ -16,12 +15,6 @@
 
 namespace vdbmap {
 namespace {
-
-VoxelMap load_present(const City& city, const CityTile& tile) {
-  std::optional<VoxelMap> map = load_tile(city, tile);
-  if (!map) throw IoError::malformed(tile_path(city.folder, tile), "is missing");
-  return std::move(*map);
-}
 
 VoxelMap map_without_voxels(const CityLayout& layout) {
   return in_layout(empty_map(layout.frame, layout.voxel_sizes), layout);
@@ -46,7 +39,7 @@ void add_found(Visibility& visibility, const VoxelLevel& level, const TileFindin
 CityTile tile_with_rays(const TileId& id, const City& made, const std::optional<City>& base, const RayWindows& rays,
                         const SaveTile& save) {
   const CityTile* tile = find_tile(made.manifest, id);
-  const VoxelMap map = tile ? load_present(made, *tile) : map_without_voxels(made.manifest.layout);
+  const VoxelMap map = tile ? load_present_tile(made, *tile) : map_without_voxels(made.manifest.layout);
   const VoxelLevel& level = map.finest();
   const std::optional<Visibility> known = tile ? load_tile_visibility(made, *tile, map) : std::nullopt;
   Visibility visibility = known
@@ -54,7 +47,7 @@ CityTile tile_with_rays(const TileId& id, const City& made, const std::optional<
                               : Visibility{level.voxel_size(), VoxelTree{{}}, std::vector<std::uint32_t>(level.size()),
                                            std::vector<std::uint32_t>(level.size())};
   const CityTile* old = base ? find_tile(base->manifest, id) : nullptr;
-  add_hits(visibility, level, old ? std::optional(load_present(*base, *old)) : std::nullopt);
+  add_hits(visibility, level, old ? std::optional(load_present_tile(*base, *old)) : std::nullopt);
   if (const std::optional<TileFindings> found = rays.findings().read(id)) add_found(visibility, level, *found);
   return save(id, map, visibility);
 }

@@ -126,6 +126,12 @@ std::optional<VoxelMap> load_tile(const City& city, const CityTile& tile) {
   return unless_missing(tile_path(city.folder, tile), [&] { return load_checked(city, tile); });
 }
 
+VoxelMap load_present_tile(const City& city, const CityTile& tile) {
+  std::optional<VoxelMap> map = load_tile(city, tile);
+  if (!map) throw IoError::malformed(tile_path(city.folder, tile), "is missing");
+  return std::move(*map);
+}
+
 VoxelMap load_window(City& city, const TileChoice& is_wanted) {
   return load_tiles(city, is_wanted, [&](const CityTile& tile) { return load_tile(city, tile); });
 }

@@ -34,6 +34,9 @@ TileChoice tiles_in_box(const Extent& box);
 /// A tile of a city; nothing where its file is missing. Throws IoError as load_window().
 std::optional<VoxelMap> load_tile(const City& city, const CityTile& tile);
 
+/// The same of a state that no writer replaces meanwhile, as a writer has it: throws IoError where the file is missing.
+VoxelMap load_present_tile(const City& city, const CityTile& tile);
+
 /// Why a map is not what the manifest says of this tile; empty where it is.
 std::string tile_problem(const VoxelMap& map, const CityTile& tile, const CityLayout& layout);
 

@@ -125,9 +125,8 @@ void TileNeighborhood::load_around(std::span<const TileId> tiles) {
     if (tile && !loaded_.contains(id)) missing.push_back(*tile);
   }
   std::vector<std::optional<VoxelMap>> maps(missing.size());
-  parallel_tasks(missing.size(), [&](std::size_t i) { maps[i] = load_tile(*city_, missing[i]); });
+  parallel_tasks(missing.size(), [&](std::size_t i) { maps[i] = load_present_tile(*city_, missing[i]); });
   for (std::size_t i = 0; i < missing.size(); ++i) {
-    if (!maps[i]) throw IoError::malformed(tile_path(city_->folder, missing[i]), "is missing");
     loaded_.emplace(missing[i].id, std::move(*maps[i]));
   }
 }

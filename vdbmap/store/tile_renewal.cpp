@@ -43,10 +43,9 @@ std::vector<CityTile> keep_tiles(const City& base, std::vector<CityTile> tiles, 
                                  const SaveTile& save) {
   if (layout == base.manifest.layout) return tiles;
   parallel_tasks(tiles.size(), [&](std::size_t i) {
-    std::optional<VoxelMap> map = load_tile(base, tiles[i]);
-    if (!map) throw IoError::malformed(tile_path(base.folder, tiles[i]), "is missing");
-    const std::optional<Visibility> seen = load_tile_visibility(base, tiles[i], *map);
-    tiles[i] = save(tiles[i].id, in_layout(std::move(*map), layout), seen);
+    VoxelMap map = load_present_tile(base, tiles[i]);
+    const std::optional<Visibility> seen = load_tile_visibility(base, tiles[i], map);
+    tiles[i] = save(tiles[i].id, in_layout(std::move(map), layout), seen);
   });
   return tiles;
 }

@@ -78,13 +78,12 @@ std::optional<Visibility> load_tile_visibility(const City& city, const CityTile&
 std::optional<Visibility> carry_visibility(const std::optional<City>& before, const TileId& id, const VoxelMap& after) {
   const CityTile* tile = before ? find_tile(before->manifest, id) : nullptr;
   if (!tile || !tile->has_rays) return std::nullopt;
-  const std::optional<VoxelMap> map = load_tile(*before, *tile);
-  if (!map) throw IoError::malformed(tile_path(before->folder, *tile), "is missing");
-  const std::optional<Visibility> known = load_tile_visibility(*before, *tile, *map);
+  const VoxelMap map = load_present_tile(*before, *tile);
+  const std::optional<Visibility> known = load_tile_visibility(*before, *tile, map);
   const VoxelLevel& level = after.finest();
   return Visibility{level.voxel_size(), united(known->seen_empty, VoxelTree{{}}, level.tree()),
-                    counts_of_voxels(known->hits, map->finest(), level),
-                    counts_of_voxels(known->passes, map->finest(), level)};
+                    counts_of_voxels(known->hits, map.finest(), level),
+                    counts_of_voxels(known->passes, map.finest(), level)};
 }
 
 }  // namespace vdbmap

@@ -443,5 +443,43 @@ TEST_F(CityParts, BadPartsAreNamedAndNothingIsWritten) {
   EXPECT_TRUE(check_city(city()).problems.empty());
 }
 
+TEST_F(CityParts, HaveNoRays) {
+  const std::vector<MapInput> inputs = four_files();
+  CityBuildOptions with_rays = options();
+  with_rays.rays = [](const auto&, const auto&) {};
+  EXPECT_THROW(build_city(city(), inputs, with_rays), std::invalid_argument);
+  EXPECT_FALSE(std::filesystem::exists(city()));
+  build_city(city(), {inputs[0]}, options());
+  const auto before = test::files_of_city(city());
+  with_rays = changes();
+  with_rays.rays = [](const auto&, const auto&) {};
+  EXPECT_THROW(add_to_city(city(), {inputs[1]}, with_rays), std::invalid_argument);
+  EXPECT_TRUE(test::files_of_city(city()) == before);
+}
+
+TEST_F(CityParts, DatesOfEpochsStay) {
+  const std::vector<MapInput> inputs = four_files();
+  CityBuildOptions first = options(1);
+  first.date = "2023-03-02";
+  build_city(city(), {inputs[0]}, first);
+  CityBuildOptions second = changes(2);
+  second.date = "2023-09-14";
+  const CityManifest manifest = add_to_city(city(), {inputs[1]}, second).manifest;
+  EXPECT_EQ(date_of(manifest), "2023-09-14");
+  ASSERT_NE(find_epoch(manifest, 1), nullptr);
+  EXPECT_EQ(find_epoch(manifest, 1)->date, "2023-03-02");
+  EXPECT_EQ(find_epoch(manifest, 3), nullptr);
+}
+
+TEST_F(CityParts, AnEarlierEpochIsNotAddedTo) {
+  const std::vector<MapInput> inputs = four_files();
+  build_city(city(), {inputs[0]}, options(1));
+  add_to_city(city(), {inputs[1]}, changes(2));
+  const auto before = test::files_of_city(city());
+  EXPECT_THROW(add_to_city(folder_ / "city@1", {inputs[2]}, changes(3)), std::invalid_argument);
+  EXPECT_FALSE(std::filesystem::exists(folder_ / "city@1"));
+  EXPECT_TRUE(test::files_of_city(city()) == before);
+}
+
 }  // namespace
 }  // namespace vdbmap

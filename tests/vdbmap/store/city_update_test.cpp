@@ -18,6 +18,8 @@
 #include "vdbmap/change/map_visibility.h"
 #include "vdbmap/core/error.h"
 #include "vdbmap/core/map_builder.h"
+#include "vdbmap/io/ply/ply.h"
+#include "vdbmap/store/city_build.h"
 #include "vdbmap/store/city_check.h"
 #include "vdbmap/store/city_diff.h"
 #include "vdbmap/store/city_of_map.h"
@@ -283,6 +285,19 @@ TEST_F(CityUpdate, WhatCannotBeLeavesTheCityAsItIs) {
   EXPECT_TRUE(test::files_of_city(path()) == files);
   update(options());
   EXPECT_THROW(update(options()), std::invalid_argument);  // the same source
+}
+
+TEST_F(CityUpdate, ACityThatKeepsPartsIsLeftAsItIs) {
+  write_ply(folder_ / "a.ply", test::sample_scene(test::street(), 6, 1));
+  CityBuildOptions build;
+  build.keeps_parts = true;
+  build_city(path(), {{{folder_ / "a.ply", std::nullopt}}}, build);
+  const auto files = test::files_of_city(path());
+  EXPECT_THROW(update(options()), std::invalid_argument);
+  EXPECT_TRUE(test::files_of_city(path()) == files);
+  EXPECT_THROW(update_city(path(), path("other"), second_drive().source(), {source()}, options()),
+               std::invalid_argument);
+  EXPECT_FALSE(std::filesystem::exists(path("other")));
 }
 
 TEST_F(CityUpdate, ADamagedTileIsNamed) {
