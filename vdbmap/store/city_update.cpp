@@ -94,7 +94,9 @@ UpdatedCity update_city(const std::filesystem::path& city, const std::filesystem
   if (!is_in_place && writer.current()) throw IoError::malformed(output, "holds a city already");
   const City base = is_in_place ? *writer.current() : open_city(city);
   if (keeps_parts(base.manifest)) {
-    throw std::invalid_argument(base.folder.string() + ": keeps the sums of its sources, which say nothing of rays");
+    throw std::invalid_argument(
+        base.folder.string() +
+        ": keeps the sums of its sources, which say nothing of rays: update a city built without --keep-parts");
   }
   check_new(sources, base);
   CityUpdateOptions chosen = options;
